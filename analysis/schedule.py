@@ -1,11 +1,11 @@
-"""The schedules of attacks as Markdown: ``python -m analysis.schedule criterion|function|sizes|families``."""
+"""The schedules of attacks as Markdown: ``python -m analysis.schedule criterion|function|sizes``."""
 
 from __future__ import annotations
 
 import sys
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.attackers.by_size import size_vector_search
+from ratt_opt.attack.size_vectors.search import STAGES as SIZE_VECTORS
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 TABLES: dict[str, Sequence[Any]] = {
     "criterion": CRITERION,
     "function": USER_FUNCTION,
-    "sizes": size_vector_search.STAGES,
+    "sizes": SIZE_VECTORS,
 }
 
 

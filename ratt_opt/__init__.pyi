@@ -44,10 +44,10 @@ from .solvers.undominated import undominated as undominated, UndominatedProblem 
 # == Attackers
 from .attackers.exact import worst_case_attack as worst_case_attack
 from .attackers.survey import attack_survey as attack_survey
-from .attackers.heuristics.bounded_rational import bounded_rational_attack as bounded_rational_attack
-from .attackers.heuristics.greedy import greedy_attack as greedy_attack
-from .attackers.heuristics.random_attack import random_attack as random_attack
-from .attackers.task import AttackResult as AttackResult
+from .attackers.heuristics import bounded_rational_attack as bounded_rational_attack
+from .attackers.heuristics import greedy_attack as greedy_attack
+from .attackers.heuristics import random_attack as random_attack
+from .attack.task import AttackResult as AttackResult
 from .attackers.criticality import (
     criticality_ranking as criticality_ranking,
     Criticality as Criticality,

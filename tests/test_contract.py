@@ -137,6 +137,6 @@ def test_a_new_name_would_be_refused() -> None:
     assert is_allowed("attackers/test_schedule.py", "attackers.exact")
     assert not is_allowed("solvers/test_ratt.py", "attackers.exact")
     assert not is_allowed("test_limits.py", "attackers.exact")
-    assert not is_allowed("attackers/test_schedule.py", "attackers.by_covers.weak_sets")
+    assert not is_allowed("attackers/test_schedule.py", "attackers.link_choice.upgrades")
     assert is_allowed("test_files.py", "_files")
     assert not is_allowed("cli/test_commands.py", "_files")

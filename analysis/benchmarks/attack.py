@@ -21,11 +21,11 @@ import numpy as np
 from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
+from ratt_opt.attack.bounds import forced_group_bound
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
+from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.forced_group import forced_group_bound
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.budget import Budget
 from ratt_opt.graph.largest_group.smallest import smallest_largest_group
 from ratt_opt.graph.outcomes import non_dominated_outcomes

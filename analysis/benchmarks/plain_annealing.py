@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.links import Links
-from ratt_opt.attack.team import Team
+from ratt_opt.attack.team import Links, Team
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
+from ratt_opt.attack.dual_prices.column_search import ColumnSearch, DualRepair
+from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search
 from ratt_opt.attack.pricing import Order
-from ratt_opt.attackers.by_prices.answer import Answer, Threshold
-from ratt_opt.attackers.by_prices.column_search import ColumnSearch
-from ratt_opt.attackers.by_prices.decision import ThresholdDecision
-from ratt_opt.attackers.by_prices.falling_prices import FallingPrices
-from ratt_opt.attackers.by_size import size_decision
-from ratt_opt.attackers.staging import without_stages
+from ratt_opt.attack.size_vectors import decision as size_decision
+from ratt_opt.attack.staging import without_stages
+from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin import descent
 from ratt_opt.solvers.maxmin.backjumps import Backjumps
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
@@ -45,7 +44,7 @@ BOUNDS: dict[str, Patches] = {
     "pricing: who is inside first": ((ColumnSearch, "orders", (Order.SENSES,)),),
     "pricing: who senses first": ((ColumnSearch, "orders", (Order.MEMBERS,)),),
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
-    "dual repair": ((FallingPrices, "fall", _gives(False)),),
+    "dual repair": ((DualRepair, "fall", _gives(False)),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
     "outer polytopes of several robots": ((search, "HEAVY_ROBOTS", ((10**9, 1),)),),
     "search of sets in depth": ((search, "WHOLE", ((10**9, 0),)), (search, "FEWEST", 1), (search, "MOST", 1)),

@@ -49,8 +49,8 @@ EVERY, CHECKERS = 0.2, 2.5
 a rule that a checker no longer applies."""
 OF_CHECKERS = "tests/certificates/"
 ONE = 1.0
-"""A function has at least one case if that takes no more seconds: most faults that the tier missed were seen by one case
-of half a second or more."""
+"""A function has at least one case if that takes no more seconds: most faults that the tier missed were seen by one
+case of half a second or more."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.attack.team import Team
+from ratt_opt.attack.team import Links, Team, has_loops
+from ratt_opt.budget import OutOfBudget
 from ratt_opt.native.library import address, function
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.links import Links
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
+    from ratt_opt.problem import Problem
 
-__all__ = ["Partition", "Starts"]
+__all__ = ["AnnealedAttacks", "Partition", "Starts"]
 
 MOVES, LONGER, LONGEST = 10_000, 16, 4
 """Moves per robot of the first starts; they double after each ``LONGER`` starts, up to ``LONGEST`` times as many. At 24
@@ -157,3 +158,32 @@ class Starts:
         )
         if function("anneal", c_int, POINTER(AnnealRecord))(byref(record)):
             raise MemoryError
+
+
+class AnnealedAttacks:
+    """Attacks on plans of one threat, for criteria with compiled code; the same for the same order of questions."""
+
+    def __init__(self, problem: Problem, budget: Budget) -> None:
+        self._threat, self._budget = problem.threat, budget
+        self._links = Links.of(problem.threat)
+        self._count = 0
+
+    @classmethod
+    def of(cls, problem: Problem, budget: Budget) -> AnnealedAttacks | None:
+        """``None`` if the objective has no compiled code."""
+        return cls(problem, budget) if has_loops(problem.objective) else None
+
+    def attack(self, problem: Problem, plan: IntArray, moves: int, known: Attack | None = None) -> Attack | None:
+        """An attack on a plan after that many moves a robot, from a known one or anew; ``None`` if none was found.
+
+        ``problem`` : may have another objective and other elements, but this threat
+        """
+        team = Team.of(problem.objective, plan)
+        assert team is not None
+        starts = Starts(team, self._links, self._threat, seed=self._count, moves=moves)
+        self._count += 1
+        try:
+            best = starts.next(self._budget) if known is None else starts.near(known, self._budget)
+        except OutOfBudget:
+            best = starts.best
+        return None if best is None else best.attack(self._threat)

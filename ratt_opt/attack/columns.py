@@ -1,13 +1,15 @@
-"""Columns of the master: groups, the links that each costs and the robots that must be blinded in it."""
+"""The groups of robots that an attack may leave: connected, and cut off by no more links than the budget has."""
 
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt.graph.group_list import GroupList
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
@@ -15,8 +17,21 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.sets_below import SetsBelow
+    from ratt_opt.graph.communication import CommunicationGraph, Link
+    from ratt_opt.graph.threat import Threat
 
-__all__ = ["UNIT", "Columns", "Duals"]
+__all__ = ["UNIT", "Columns", "Duals", "groups_of"]
+
+
+def groups_of(threat: Threat) -> GroupList:
+    """The list of a threat's groups, of at most 32 robots; the last few graphs' are kept."""
+    return _kept(threat.graph, threat.alpha_c, threat.protected_links)
+
+
+@lru_cache(maxsize=2)
+def _kept(graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> GroupList:
+    return GroupList(graph, most_cut, protected_links, (np.uint32, np.uint8))
+
 
 UNIT = 1 << 20
 """Of integer duals, one link: with them reduced costs are exact."""
@@ -35,8 +50,15 @@ class Duals:
 
     def __init__(self, robots: IntArray, blinding: int) -> None:
         self.robots, self.blinding = robots, blinding
-        self._sums = _sums_of_sets(robots[:HALF]), _sums_of_sets(robots[HALF:])
-        self.record = _DualsRecord(*map(address, self._sums), UNIT, blinding)
+
+    @cached_property
+    def _sums(self) -> tuple[IntArray, IntArray]:
+        return _sums_of_sets(self.robots[:HALF]), _sums_of_sets(self.robots[HALF:])
+
+    @property
+    def record(self) -> _DualsRecord:
+        """As C reads it, for teams of up to 32 robots."""
+        return _DualsRecord(*map(address, self._sums), UNIT, self.blinding)
 
     def claim(self, n_blinded: int) -> int:
         """What groups that cover the team cost at least, if no column has a negative reduced cost."""

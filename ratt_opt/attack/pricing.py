@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
-from ratt_opt.attack.links import Links
-from ratt_opt.attack.team import Team, TeamRecord
+from ratt_opt.attack.team import Links, Team, TeamRecord
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["BLINDED", "UNIT", "GroupSearch", "Order", "Plan", "Question"]
+__all__ = ["BLINDED", "UNIT", "Column", "DualPrices", "GroupSearch", "Order", "Plan", "Question"]
 
 UNIT = 1 << 20
 """Of duals, one link that leaves a group."""
@@ -160,6 +159,29 @@ class Plan:
             question.effort or min(EFFORT, EFFORT_WORK // self.team.work + 1),
             *([None] * 3 if tables is None else map(address, tables)),
         )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DualPrices:
+    """``robot`` : (N,) pi; ``blinded`` : mu; ``links`` : links they claim an attack cuts."""
+
+    robot: FloatArray
+    blinded: float
+    links: float
+
+    def scaled(self, links: float) -> DualPrices:
+        """The same prices in proportion, claiming that many links."""
+        factor = links / self.links
+        return DualPrices(robot=self.robot * factor, blinded=self.blinded * factor, links=links)
+
+    def for_robots(self, links: float, n_blinded: int) -> DualPrices:
+        """Cheaper robots and the same price of a blinded one, claiming that many links."""
+        paid = self.blinded * n_blinded
+        return replace(self, robot=self.robot * ((links + paid) / (self.links + paid)), links=links)
+
+    def lowered(self, amount: float) -> DualPrices:
+        """Every robot cheaper by an amount: every group's reduced cost rises by at least as much."""
+        return DualPrices(robot=self.robot - amount, blinded=self.blinded, links=self.links - amount * len(self.robot))
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_void_p
-from typing import TYPE_CHECKING, ClassVar, TypeGuard
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -14,9 +14,10 @@ from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Team", "TeamRecord", "has_loops", "work_of_value"]
+__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "TeamRecord", "has_loops", "work_of_value"]
 
 MOST_ROBOTS = 32
 """Whose sets the loops have as masks of 32 bits; a team may have more."""
@@ -128,3 +129,33 @@ class Team:
     def work(self) -> int:
         """Of one value, in about multiplications."""
         return work_of_value(self.record.targets, self.record.dimension)
+
+
+class Links(NamedTuple):
+    """A threat's graph: robot ``i`` has arcs ``start[i]:start[i + 1]`` to ``robot``.
+
+    ``start`` : (N + 1,); ``robot`` : (A,) the other end; ``back`` : (A,) the same link's arc the other way;
+    ``fixed`` : (A,) whether the link cannot be cut; ``seeing`` : (N,) whether the robot cannot be blinded
+    """
+
+    start: IntArray
+    robot: IntArray
+    back: IntArray
+    fixed: BoolArray
+    seeing: BoolArray
+
+    @classmethod
+    def of(cls, threat: Threat) -> Links:
+        """The graph of a threat."""
+        arcs = sorted([*threat.graph.links, *((j, i) for i, j in threat.graph.links)])
+        place = {arc: a for a, arc in enumerate(arcs)}
+        n_robots = threat.graph.n_robots
+        start = np.searchsorted([i for i, _ in arcs], np.arange(n_robots + 1)) if arcs else np.zeros(n_robots + 1)
+        fixed = [(min(arc), max(arc)) in threat.protected_links for arc in arcs]
+        return cls(
+            start.astype(np.int64),
+            np.array([j for _, j in arcs], dtype=np.int64),
+            np.array([place[j, i] for i, j in arcs], dtype=np.int64),
+            np.array(fixed, dtype=np.bool_),
+            np.array([i in threat.protected_robots for i in range(n_robots)], dtype=np.bool_),
+        )

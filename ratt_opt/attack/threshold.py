@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.attack.columns import UNIT, Columns
 from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.master import best_duals
@@ -57,15 +59,19 @@ def decide(
     level, following = below.mark(threshold, budget)
     columns = Columns.of(groups, cuts, below, threat.n_blinded)
     most_cut = 2 * threat.alpha_c
-    duals = best_duals(columns, threat.n_blinded, most_cut, budget)
+    duals, _ = best_duals(columns, threat.n_blinded, most_cut, budget)
     gap = most_cut * UNIT - duals.claim(threat.n_blinded)
     if gap < 0:
         return Answer(is_reachable=False, level=level, following=following)
     chosen = columns.within(duals, gap, MOST_COLUMNS)
     if chosen is None:
         return Answer(is_reachable=None)
-    covered = ExactCover(*chosen, gap, threat.n_blinded, most_cut).next(budget, steps)
-    if not isinstance(covered, list):
-        return Answer(is_reachable=covered, level=level, following=following)
+    few, costs = chosen
+    paid = np.column_stack([costs, few.blinded, few.cuts]).astype(np.int64)
+    masks = few.groups[:, None].astype(np.uint64)
+    places = ExactCover(few.robots, masks, paid, (gap, threat.n_blinded, most_cut)).next(budget, steps)
+    if not isinstance(places, list):
+        return Answer(is_reachable=places, level=level, following=following)
+    covered = few.groups[places].tolist()
     blinded = sum(group ^ below.largest_inside(group) for group in covered)
     return Answer(is_reachable=True, groups=tuple(covered), blinded=blinded)

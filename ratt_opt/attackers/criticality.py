@@ -7,9 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Self
 
 from ratt_opt._validation import check_number
+from ratt_opt.attack.task import PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics.partial_attack import PartialAttack, team_values
-from ratt_opt.attackers.task import PlanValues
+from ratt_opt.attackers.heuristics import PartialAttack, team_values
 from ratt_opt.budget import Budget, Stop
 from ratt_opt.running.progress import Step
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.graph.communication import Link
     from ratt_opt.problem import Attack, Problem
 

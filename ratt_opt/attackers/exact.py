@@ -6,14 +6,9 @@ import math
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.all_sets import sets_can_be_looked_at
-from ratt_opt.attackers.any_function import metered_problem
-from ratt_opt.attackers.attack_tree import AttackTree
-from ratt_opt.attackers.criterion_attack import CriterionAttack
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
-from ratt_opt.attackers.staging import recorded, run_stages
-from ratt_opt.attackers.task import (
+from ratt_opt.attack.all_sets import sets_can_be_looked_at
+from ratt_opt.attack.staging import recorded, run_stages
+from ratt_opt.attack.task import (
     AttackBracket,
     AttackMemory,
     AttackResult,
@@ -23,6 +18,11 @@ from ratt_opt.attackers.task import (
     StageRecord,
     outward,
 )
+from ratt_opt.attackers.any_function import metered_problem
+from ratt_opt.attackers.attack_tree import AttackTree
+from ratt_opt.attackers.criterion_attack import CriterionAttack
+from ratt_opt.attackers.heuristics import bounded_rational_attack
+from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.errors import InputError

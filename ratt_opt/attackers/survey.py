@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ratt_opt.attack.task import PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
-from ratt_opt.attackers.heuristics.random_attack import random_attack
-from ratt_opt.attackers.task import PlanValues
+from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, heuristic_result, random_attack
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
@@ -20,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.problem import Problem
 
 __all__ = ["attack_survey"]

@@ -5,16 +5,14 @@ from __future__ import annotations
 from math import isinf
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.all_sets import LARGEST_VALUED, AllSets, sets_can_be_looked_at
-from ratt_opt.attackers.annealed_values import annealed_attacks
-from ratt_opt.attackers.any_function import any_bound, exchange_attack
-from ratt_opt.attackers.attack_tree import AttackTree
-from ratt_opt.attackers.few_attacks import try_every_attack
+from ratt_opt.attack.all_sets import LARGEST_VALUED, AllSets, sets_can_be_looked_at
+from ratt_opt.attackers.any_function import annealed_attacks, any_bound, exchange_attack
+from ratt_opt.attackers.attack_tree import AttackTree, try_every_attack
 from ratt_opt.budget import Stop
 from ratt_opt.graph.few_cuts import attacks_are_few
 
 if TYPE_CHECKING:
-    from ratt_opt.attackers.task import AttackTask, Resumable
+    from ratt_opt.attack.task import AttackTask, Resumable
 
 __all__ = ["TeamAttack", "last_stage"]
 

@@ -1,6 +1,6 @@
 """Proofs by dual prices that every attack leaves a group worth a threshold.
 
-All groups that an attack may leave (``listed_columns.py``), or the attacker's search (``attackers/by_prices``) if there
+All groups that an attack may leave (``listed_columns.py``), or the attacker's search (``attack/dual_prices``) if there
 are too many, give duals at which no group below the threshold costs less than nothing. Here they become integers, a
 tree closes or lists the groups (``group_tree.py``), and if some are listed, a search shows that they do not partition
 the team.
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attack.pricing import Question
-from ratt_opt.attackers.by_prices.answer import Threshold
+from ratt_opt.attack.threshold_search import Threshold
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import group_tree, sets_proof
 from ratt_opt.certificates.listed_columns import duals_of_all_groups
@@ -93,7 +93,7 @@ def _question(plan: Plan, sets: PlanSets) -> Question:
 
 def _searched_duals(plan: Plan, sets: PlanSets) -> tuple[FloatArray, float]:
     """Those with which the attacker's search refutes the threshold [links that leave a group]."""
-    from ratt_opt.attackers.by_prices.decision import ThresholdDecision
+    from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 
     seconds = seconds_left()
     budget = Budget(None if seconds == np.inf else seconds)

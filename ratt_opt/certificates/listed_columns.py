@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.columns import UNIT, Columns
-from ratt_opt.attack.groups import groups_of
+from ratt_opt.attack.columns import UNIT, Columns, groups_of
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import MOST_ROBOTS
@@ -44,7 +43,7 @@ def duals_of_all_groups(plan: Plan, threshold: float) -> tuple[FloatArray, float
         if columns is None:
             return None
         n_blinded, most_cut = plan.threat.n_blinded, 2 * plan.threat.alpha_c
-        found = best_duals(columns, n_blinded, 2 * len(plan.threat.graph.links) + plan.robots, budget)
+        found, _ = best_duals(columns, n_blinded, 2 * len(plan.threat.graph.links) + plan.robots, budget)
     except OutOfBudget:
         return None
     robots, blinded = found.robots / UNIT, found.blinding / UNIT

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import readonly
+from ratt_opt.attack.task import PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics.partial_attack import heuristic_result
-from ratt_opt.attackers.task import PlanValues
+from ratt_opt.attackers.heuristics import heuristic_result
 from ratt_opt.main_job.result import PlanAssessment
 from ratt_opt.problem import Attack, Plan, Problem
 from ratt_opt.setfunctions.information import InformationObjective
@@ -18,7 +18,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
 
 __all__ = ["assess", "recommended", "views_of"]

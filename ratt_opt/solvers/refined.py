@@ -17,7 +17,7 @@ import numpy as np
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt._values import shown
-from ratt_opt.attackers.task import outward
+from ratt_opt.attack.task import outward
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
 
 __all__ = ["RefinedPlan", "refined"]
 

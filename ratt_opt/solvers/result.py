@@ -9,14 +9,14 @@ import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, Shown, plain, shown
-from ratt_opt.attackers.task import outward
+from ratt_opt.attack.task import outward
 from ratt_opt.problem import Plan
 
 if TYPE_CHECKING:
     from numpy.typing import DTypeLike, NDArray
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Stop
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.proof import UpperProof

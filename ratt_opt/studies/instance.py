@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 import networkx as nx
 
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, random_attack
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.attackers import attack_of
@@ -32,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.missions.players.attackers import OwnAttacker
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.simulation import Tracking

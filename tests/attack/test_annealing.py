@@ -8,8 +8,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attack import annealing as module
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.links import Links
-from ratt_opt.attack.team import Team
+from ratt_opt.attack.team import Links, Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
 from tests.strategies import team_problem

@@ -9,15 +9,16 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack import exact_cover, groups, sets_below
+from ratt_opt.attack import columns as columns_module
+from ratt_opt.attack import exact_cover, sets_below
 from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, Duals
-from ratt_opt.attack.exact_cover import ExactCover
-from ratt_opt.attack.families.disjoint_sets import ChoiceRecord, DisjointRecord
+from ratt_opt.attack.exact_cover import CoverRecord, ExactCover
 from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.pricing import QuestionRecord
 from ratt_opt.attack.sets_below import SetsBelow
+from ratt_opt.attack.size_vectors.disjoint_sets import ChoiceRecord, DisjointRecord
 from ratt_opt.attack.team import Team, TeamRecord
 from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import Budget, OutOfBudget
@@ -55,7 +56,7 @@ def check_attack(threat, values, answer, threshold):
 
 
 def asked(threat, below, threshold, **options):
-    return decide(threat, below, groups.groups_of(threat), threshold, Budget(), steps=10**9, **options)
+    return decide(threat, below, columns_module.groups_of(threat), threshold, Budget(), steps=10**9, **options)
 
 
 @pytest.mark.parametrize("seed", range(150))
@@ -165,7 +166,7 @@ def test_duals_and_covers_against_all_covers(seed):
                 yield from covers(left ^ mask, blinded - int(columns.blinded[k]), cut + int(columns.cuts[k]))
 
     costs = list(covers(2**robots - 1, n_blinded, 0))
-    duals = best_duals(columns, n_blinded, most_cut, Budget())
+    duals, _ = best_duals(columns, n_blinded, most_cut, Budget())
     reduced = [
         UNIT * int(cut) + duals.blinding * int(blind) - sum(int(duals.robots[i]) for i in members(int(mask)))
         for mask, cut, blind in zip(columns.groups, columns.cuts, columns.blinded, strict=True)
@@ -178,15 +179,19 @@ def test_duals_and_covers_against_all_covers(seed):
         return
     chosen = columns.within(duals, gap, 1000)
     assert sorted(chosen[1].tolist()) == sorted(cost for cost in reduced if cost <= gap)
-    found = ExactCover(*chosen, gap, n_blinded, most_cut).next(Budget(), 10**9)
+    few, paid = chosen[0], np.column_stack([chosen[1], chosen[0].blinded, chosen[0].cuts]).astype(np.int64)
+    search = ExactCover(robots, few.groups[:, None].astype(np.uint64), paid, (gap, n_blinded, most_cut))
+    found = search.next(Budget(), 10**9)
     assert bool(found) == any(cost <= most_cut for cost in costs)
 
 
 def test_a_search_that_its_budget_ends_goes_on():
     rng = np.random.default_rng(7)
     columns = random_columns(rng, 12, 4000)
-    whole = ExactCover(columns, np.zeros(4000, np.int64), 0, 40, 12 * 9).next(Budget(), 10**12)
-    parts, found = ExactCover(columns, np.zeros(4000, np.int64), 0, 40, 12 * 9), None
+    masks, costs = columns.groups[:, None].astype(np.uint64), np.zeros((4000, 3), np.int64)
+    costs[:, 1], costs[:, 2] = columns.blinded, columns.cuts
+    whole = ExactCover(12, masks, costs, (0, 40, 12 * 9)).next(Budget(), 10**12)
+    parts, found = ExactCover(12, masks, costs, (0, 40, 12 * 9)), None
     with pytest.raises(OutOfBudget):
         parts.next(Budget(max_nodes=0), 10**12)
     while found is None:
@@ -209,7 +214,7 @@ def test_the_budget_is_asked_on_the_way(monkeypatch):
     threat = Threat(problem.communication, 3, 30)
     team = Team.of(problem.objective, np.arange(12))
     with pytest.raises(OutOfBudget):
-        groups.groups_of(threat).all(Spent())
+        columns_module.groups_of(threat).all(Spent())
     with pytest.raises(OutOfBudget):
         SetsBelow(team).mark(1.0, Spent())
 
@@ -238,9 +243,9 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(14, np.int64)
+    sizes = np.zeros(15, np.int64)
     layout(sizes.ctypes.data)
-    records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord)]
+    records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord, CoverRecord)]
     first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
     of_graphs = LEVEL.itemsize, ctypes.sizeof(PartitionsRecord), ctypes.sizeof(CutAnnealRecord)
     assert sizes.tolist() == [*first, *records, *of_graphs, ctypes.sizeof(GreedyRecord), ctypes.sizeof(DescentRecord)]

@@ -12,35 +12,32 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import ratt_opt as ro
+from ratt_opt.attack import all_sets, listed_columns
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.families.group_exchanges import GroupExchanges
+from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search as set_search
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
-from ratt_opt.attack.links import Links
+from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import Plan
-from ratt_opt.attack.team import Team
+from ratt_opt.attack.size_vectors import decision as size_decision
+from ratt_opt.attack.size_vectors import search as size_vector_search
+from ratt_opt.attack.size_vectors.search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
+from ratt_opt.attack.staging import without_stages
+from ratt_opt.attack.task import AttackBracket, AttackMemory, AttackTask, PlanValues
+from ratt_opt.attack.team import Links, Team
+from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers import (
-    all_sets,
     attack_tree,
     criterion_attack,
     criticality,
     exact,
-    schedule,
     survey,
     team_attack,
 )
-from ratt_opt.attackers.annealed_values import annealed_attacks
-from ratt_opt.attackers.any_function import exchange_attack
-from ratt_opt.attackers.by_covers.cover_search import CoverSearch
-from ratt_opt.attackers.by_partition import settled_partitions
-from ratt_opt.attackers.by_partition.split_search import SplitSearch
-from ratt_opt.attackers.by_prices.price_search import PriceSearch
-from ratt_opt.attackers.by_size import size_decision, size_vector_search
-from ratt_opt.attackers.by_size.size_vector_search import SizeVectorSearch
-from ratt_opt.attackers.few_attacks import try_every_attack
+from ratt_opt.attackers.any_function import annealed_attacks, exchange_attack
+from ratt_opt.attackers.attack_tree import try_every_attack
 from ratt_opt.attackers.link_choice import best_links
-from ratt_opt.attackers.staging import without_stages
-from ratt_opt.attackers.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.separable_groups import separable_groups
 from ratt_opt.setfunctions.metered import Metered
@@ -89,8 +86,14 @@ def _packed(task: AttackTask) -> PackedTeam | None:
     return PackedTeam.of(task.problem.objective, task.values.plan)
 
 
-def _priced(task: AttackTask) -> PriceSearch:
-    return PriceSearch(task, Plan.of(task.problem.objective, task.values.plan, task.problem.threat))
+def _priced(task: AttackTask) -> ThresholdSearch:
+    plan = Plan.of(task.problem.objective, task.values.plan, task.problem.threat)
+    return ThresholdSearch(task, plan, ThresholdDecision(plan))
+
+
+def _by_list(task: AttackTask) -> ListedSearch:
+    plan = Plan.of(task.problem.objective, task.values.plan, task.problem.threat)
+    return ListedSearch(task, plan, _packed(task), separable_groups(task.problem.threat, 100_000))
 
 
 def _annealed_then_priced(task: AttackTask) -> Stop:
@@ -102,9 +105,8 @@ def _annealed_then_priced(task: AttackTask) -> Stop:
 SEARCHES = {
     "all sets": all_sets.AllSets,
     "size vectors": lambda task: SizeVectorSearch(task, _packed(task)),
-    "partitions": lambda task: SplitSearch(task, _packed(task), separable_groups(task.problem.threat, 100_000)),
-    "exact covers": lambda task: CoverSearch(task, _packed(task), separable_groups(task.problem.threat, 100_000)),
     "dual prices": _priced,
+    "listed columns": _by_list,
     "branch and bound": attack_tree.AttackTree,
     "annealed attacks and dual prices": lambda task: Once(task, _annealed_then_priced),
     "every attack": lambda task: Once(task, try_every_attack),
@@ -155,7 +157,6 @@ def searched(name: str, problem: Problem, plan: object, first: Attack | None = N
 
 
 NO_LISTS = {
-    (size_vector_search, "MAYBE_SHORT"): -1,
     (set_search, "WHOLE"): ((10**9, 0),),
     (set_search, "FEWEST"): 1,
     (set_search, "MOST"): 1,
@@ -165,16 +166,6 @@ FAMILIES = {(size_decision, "PACKED"): -1}
 """All families of a vector of sizes are searched at once."""
 PACKED = {(size_decision, "PACKED"): 100, (size_decision, "NODES_OF_SET"): 1, (size_decision, "NODES_OF_PACKING"): 1}
 """The other groups are packed around each largest one."""
-SOON_OVER = tuple(
-    replace(stage, max_nodes=20) if stage.name == "partitions" and stage.max_nodes else stage
-    for stage in schedule.CRITERION
-)
-"""Partitions are searched for at most 20 nodes at first."""
-SHARP_SOON = {
-    (settled_partitions, "PLAIN_NODES"): 3,
-    (settled_partitions, "AXIS_NODES"): 3,
-    (settled_partitions, "SHARPER_AFTER"): 0,
-}
 NO_TABLES = {
     (all_sets, "LARGEST_VALUED"): 0,
     (all_sets, "LARGEST_LOOKED_AT"): 0,
@@ -192,12 +183,10 @@ COMMAND = {
 }
 """What the command ``attack`` asks for, in this order, and where it is."""
 WAYS = {
-    "partitions": {(criterion_attack, "MANY_GROUPS"): 300_000, (criterion_attack, "PARTITIONED"): 300_000},
-    "sharp partitions": SHARP_SOON | {(exact, "CRITERION"): SOON_OVER},
-    "exact covers": {(criterion_attack, "PARTITIONED"): 0},
-    "dual prices": {(criterion_attack, "MANY_GROUPS"): 0},
+    "listed columns": {},
+    "many listed columns": {(listed_columns, "FEW_LISTED"): 0},
+    "dual prices": {(criterion_attack, "MOST_LISTED"): 0, (criterion_attack, "FEW_LISTED"): 0},
     "dense": {(criterion_attack, "DENSE"): 0.0},
-    "dense, dual prices": {(criterion_attack, "DENSE"): 0.0, (criterion_attack, "MANY_GROUPS"): 0},
     "no lists": NO_LISTS | {(size_vector_search, "ALIKE"): 0.0},
     "families": FAMILIES,
     "packed": PACKED,
@@ -205,9 +194,9 @@ WAYS = {
 """Which stages decide, where it is not what the team is like that says so."""
 
 
-def size_vectors(most: int, maybe_short: int) -> Way:
-    """Vectors of sizes that are searched, and sets of a size that may be listed in no time."""
-    return {(size_vector_search, "MOST_VECTORS"): most, (size_vector_search, "MAYBE_SHORT"): maybe_short}
+def size_vectors(most: int) -> Way:
+    """Vectors of sizes that are searched."""
+    return {(size_vector_search, "MOST_VECTORS"): most}
 
 
 def open_nodes(most: int) -> Way:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attackers.forced_group import forced_survivors
+from ratt_opt.attack.bounds import forced_survivors
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attackers.engine import watch
 from tests.brackets import attains, is_exact

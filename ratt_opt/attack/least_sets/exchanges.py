@@ -15,6 +15,7 @@ import numpy as np
 from ratt_opt.attack.team import TeamRecord
 from ratt_opt.budget import Budget
 from ratt_opt.native.library import address, checked, function
+from ratt_opt.setfunctions.information import from_triangles, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.least_sets.packed_team import PackedTeam
 
-__all__ = ["exchanged", "weak_sets_of_size"]
+__all__ = ["descended", "exchanged", "weak_sets_of_size"]
 
 RANDOM_STARTS = 40
 """Starts beside those that the data suggest; each costs a local search, and with a few dozen in all attacks on teams of
@@ -106,3 +107,21 @@ def _settle(team: PackedTeam, kept: FloatArray, where: Any, budget: Budget) -> N
             return
     if finished < 0:
         raise MemoryError
+
+
+def descended(team: PackedTeam, start: IntArray) -> IntArray:
+    """Robots, as many as in ``start`` (K,) and worth no more; from the end of their descent."""
+    chosen, value = start, team.value(start)
+    while True:
+        scores = np.einsum("nmt,mt->n", team.information, _slopes(team, team.sums(chosen)))
+        others = np.argsort(scores, kind="stable")[: len(start)]
+        if (lower := team.value(others)) >= value:
+            return chosen
+        chosen, value = others, lower
+
+
+def _slopes(team: PackedTeam, sums: FloatArray) -> FloatArray:
+    """(M, T) supergradient of the value in the entries of packed matrices, at posterior information (M, T)."""
+    gradient = team.objective.gradient(from_triangles(sums))
+    off_diagonal_twice = triangles(2 - np.eye(gradient.shape[-1]))
+    return off_diagonal_twice * triangles(gradient)

@@ -8,7 +8,6 @@ robots by reduced cost, and orders them for the search in depth, which finishes 
 from __future__ import annotations
 
 import heapq
-from ctypes import POINTER, c_double, c_int64, c_void_p
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -18,8 +17,6 @@ from ratt_opt.attack.least_sets.exchanges import exchanged
 from ratt_opt.attack.least_sets.sets_of_size import BoundedSets
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
-from ratt_opt.attack.team import TeamRecord
-from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -31,7 +28,7 @@ if TYPE_CHECKING:
 
     Found = Generator[frozenset[int] | None, None, None]
 
-__all__ = ["LeastSetSearch", "SetNode", "least_value_bound"]
+__all__ = ["LeastSetSearch", "SetNode"]
 
 WHOLE, BY_AXIS = ((32, 200_000), (10**9, 40_000)), 10_000
 """(Robots of a team up to, partial sets of the search in depth before branch and bound begins), and at most that many
@@ -231,15 +228,3 @@ class LeastSetSearch:
         for one in (candidate, exchanged(self.team, candidate, among=among, fixed=self._inside, budget=budget)):
             if self.team.value(one) < self.threshold:
                 yield one
-
-
-def least_value_bound(team: PackedTeam, size: int) -> float:
-    """No set of ``size`` robots is worth less; by the weakest axis if that decides, else by pairs of robots."""
-    if not 1 < size <= len(team.single):
-        return -np.inf if size != 1 else float(team.single.min())
-    if team.is_by_axis:
-        return weakest_axis(team.family(np.arange(len(team.single)), size)).bound
-    n_robots, native = len(team.single), team.native()
-    pairs, spare = np.empty((n_robots, n_robots)), np.empty(team.prior.size + n_robots)
-    call = function("least_by_pairs", c_double, POINTER(TeamRecord), c_int64, *[c_void_p] * 2)
-    return float(call(native.reference, size, address(pairs), address(spare)))

@@ -124,8 +124,8 @@ class SetSearch:
 class BoundedSets:
     """The sets of ``size`` of some ``robots`` (F,) beside those ``inside``, by a search in depth.
 
-    ``scores`` : constant and (F,) of an affine underestimator of the value; by default none
-    ``in_order`` : decide robots in the order given; with scores, those first of whose side these are surest
+    ``scores`` : constant and (F,) of an affine underestimator of the value; by default none;
+    then those robots are decided first of whose side it is surest
     """
 
     def __init__(  # noqa: PLR0917
@@ -136,8 +136,6 @@ class BoundedSets:
         size: int,
         threshold: float,
         scores: tuple[float, FloatArray] | None = None,
-        *,
-        in_order: bool = False,
     ) -> None:
         fixed, self._scale = np.isin(np.arange(team.robots), list(inside)), max(abs(threshold), 1e-300)
         self._constant, costs = -np.inf, None
@@ -149,7 +147,7 @@ class BoundedSets:
                 middle = np.partition(own, size - 1)[size - 1]
                 robots = robots[np.argsort(-np.abs(own - middle), kind="stable")]
         self._search = SetSearch(
-            team, size, threshold, among=robots, inside=fixed, costs=costs, in_order=in_order or costs is not None
+            team, size, threshold, among=robots, inside=fixed, costs=costs, in_order=costs is not None
         )
         self._pause = max(AT_ONCE // (team.record.targets * team.robots), 1)
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer
 from ratt_opt._values import Shown
+from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, PlanValues, outward
 from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.link_choice.choice_search import best_choice
 from ratt_opt.attackers.link_choice.known_attacks import KnownAttacks
 from ratt_opt.attackers.link_choice.upgrades import Addition, Protection
-from ratt_opt.attackers.task import CLOSED_WIDTH, AttackMemory, PlanValues, outward
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import check_problem
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.attackers.link_choice.upgrades import Upgrade
-    from ratt_opt.attackers.task import AttackResult
     from ratt_opt.graph.communication import Link
     from ratt_opt.problem import Problem
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.attack.task import PlanValues
     from ratt_opt.attackers.link_choice.upgrades import Upgrade
-    from ratt_opt.attackers.task import PlanValues
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
     from ratt_opt.problem import Attack, Problem

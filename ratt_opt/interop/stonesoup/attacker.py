@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
     from datetime import datetime
 
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.interop.stonesoup.nodes import Node
 
 __all__ = ["Aftermath", "SurvivingGroup", "WorstCaseAttacker"]

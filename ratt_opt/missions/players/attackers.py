@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.all_sets import LARGEST_VALUED
+from ratt_opt.attack.all_sets import LARGEST_VALUED
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.heuristics.random_attack import random_attack
+from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, random_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import player_called
@@ -18,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.problem import Problem
 
     Attacker = Callable[[Problem, IntArray, int], Attack | AttackResult]

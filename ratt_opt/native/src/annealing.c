@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "random.h"
 #include "records.h"
 #include "sets.h"
 #include "team.h"
@@ -32,15 +33,7 @@ typedef struct {
     uint64_t random;
 } State;
 
-/* Uniform in [0, 1); xorshift64*, Vigna 2016. */
-static double uniform(State *s) {
-    uint64_t x = s->random;
-    x ^= x >> 12, x ^= x << 25, x ^= x >> 27;
-    s->random = x;
-    return (double)((x * 0x2545F4914F6CDD1DULL) >> 11) * 0x1p-53;
-}
-
-static int64_t below(State *s, int64_t count) { return (int64_t)(uniform(s) * (double)count); }
+static int64_t below(State *s, int64_t count) { return (int64_t)(uniform(&s->random) * (double)count); }
 
 static void sense(State *s, int64_t robot, double sign, double *sums) {
     const double *own = s->a->team->information + (size_t)robot * s->width;
@@ -69,12 +62,12 @@ static void fill(State *s) {
 
 static Move propose(State *s, int64_t n_blinded) {
     const Anneal *a = s->a;
-    double chance = uniform(s);
+    double chance = uniform(&s->random);
     int64_t i = below(s, a->robots), j = below(s, a->robots);
     Move move = {IMPOSSIBLE, i, j, a->group[i], a->group[j]};
     if (chance < TRANSFER || n_blinded == 0) {
         int64_t degree = a->start[i + 1] - a->start[i];
-        if (degree == 0 || uniform(s) < OWN_GROUP) {
+        if (degree == 0 || uniform(&s->random) < OWN_GROUP) {
             if (s->size[move.home] == 1) return move;
             for (move.to = 0; s->size[move.to];) move.to++;
         } else {
@@ -227,7 +220,7 @@ EXPORTED int anneal(const Anneal *a) {
             continue;
         }
         double temperature = a->hot * pow(a->cold / a->hot, (double)step / (double)a->steps);
-        try_move(&s, &move, cut, energy - temperature * log(1.0 - uniform(&s)), &energy);
+        try_move(&s, &move, cut, energy - temperature * log(1.0 - uniform(&s.random)), &energy);
         keep_better(&s, energy);
     }
     *a->random = s.random;

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "random.h"
 #include "records.h"
 #include "sets.h"
 #include "team.h"
@@ -23,11 +24,6 @@ typedef struct {
 typedef struct {
     int robot, becomes, other, other_becomes; /* other: -1 for none */
 } Move;
-
-static double uniform(Group *g) {
-    g->random ^= g->random << 13, g->random ^= g->random >> 7, g->random ^= g->random << 17;
-    return (double)(g->random >> 11) * 0x1p-53;
-}
 
 /* Make a robot something else; what the reduced cost rises by. */
 static int64_t change(Group *g, int robot, int becomes) {
@@ -55,10 +51,10 @@ static int touches(const Group *g, int robot) {
 /* 0 where there is no such move. */
 static int propose(Group *g, int first, Move *move) {
     const Pricing *q = g->q;
-    int i = (int)(uniform(g) * g->n);
+    int i = (int)(uniform(&g->random) * g->n);
     int64_t degree = q->start[i + 1] - q->start[i];
-    if (g->part[i] != OUT && degree && uniform(g) < ALONG) i = (int)q->robot[q->start[i] + (int64_t)(uniform(g) * (double)degree)];
-    double chance = uniform(g);
+    if (g->part[i] != OUT && degree && uniform(&g->random) < ALONG) i = (int)q->robot[q->start[i] + (int64_t)(uniform(&g->random) * (double)degree)];
+    double chance = uniform(&g->random);
     *move = (Move){i, OUT, -1, OUT};
     if (g->part[i] == OUT) {
         if (!touches(g, i)) return 0;
@@ -68,10 +64,10 @@ static int propose(Group *g, int first, Move *move) {
     } else {
         move->becomes = i == first || chance < TO_SENSING ? SENSING : OUT;
     }
-    int j = (int)(uniform(g) * g->n);
-    if (j != i && j != first && g->part[j] != OUT && uniform(g) < SWAP) {
+    int j = (int)(uniform(&g->random) * g->n);
+    if (j != i && j != first && g->part[j] != OUT && uniform(&g->random) < SWAP) {
         move->other = j;
-        if (uniform(g) < 0.5) move->other_becomes = g->part[j] == SENSING ? BLIND : SENSING;
+        if (uniform(&g->random) < 0.5) move->other_becomes = g->part[j] == SENSING ? BLIND : SENSING;
     }
     return !(move->becomes == BLIND && q->seeing[i]) && !(move->other_becomes == BLIND && q->seeing[j]);
 }
@@ -114,7 +110,7 @@ EXPORTED int64_t anneal_column(const Pricing *q, int64_t first, int64_t moves, d
         double temperature = hot * pow(cold / hot, (double)step / (double)moves);
         int64_t rise = change(&g, move.robot, move.becomes);
         if (move.other >= 0) rise += change(&g, move.other, move.other_becomes);
-        int taken = rise <= 0 || uniform(&g) < exp(-(double)rise / temperature);
+        int taken = rise <= 0 || uniform(&g.random) < exp(-(double)rise / temperature);
         if (taken && stays_below(&g, &move, was, other_was)) {
             cost += rise, blinded = after;
             if (cost < least) {

@@ -1,63 +1,66 @@
-/* Exact covers of the team by groups, within the budgets and a sum of reduced costs. */
+/* Exact covers of a team by groups, within the budgets and a sum of reduced costs. */
+#include <string.h>
+
 #include "records.h"
 #include "sets.h"
 
 enum { FOUND = 1, NONE = 0, PAUSED = -1, NO_ROOM = -2 };
 
-/* The robot with the fewest columns. */
-static int rarest(const Level *level, const int32_t *fitting, const uint32_t *groups) {
-    int64_t counts[32] = {0};
+/* The robot not covered yet with the fewest columns. */
+static int rarest(const Cover *cover, const Level *level, const uint64_t *left) {
     int pick = -1;
+    memset(cover->counts, 0, (size_t)cover->robots * sizeof(int64_t));
     for (int64_t k = level->start; k < level->end; k++)
-        for (uint32_t rest = groups[fitting[k]]; rest;) counts[next_robot(&rest)]++;
-    for (uint32_t rest = level->left; rest;) {
-        int i = next_robot(&rest);
-        if (pick < 0 || counts[i] < counts[pick]) pick = i;
-    }
+        for (int64_t w = 0; w < cover->words; w++)
+            for (uint64_t rest = cover->groups[cover->fitting[k] * cover->words + w]; rest; rest &= rest - 1)
+                cover->counts[64 * w + lowest(rest)]++;
+    for (int i = 0; i < cover->robots; i++)
+        if (left[i >> 6] >> (i & 63) & 1 && (pick < 0 || cover->counts[i] < cover->counts[pick])) pick = i;
     return pick;
 }
 
-/* Go on from levels[depth] to the next cover. Columns are sorted by reduced cost. `fitting` (room) holds those that fit at
-   each level, one after the other. `depth`: -1 at the end; `nodes`: counted; `steps`: columns looked at before a pause. */
-EXPORTED int next_cover(const uint32_t *groups, const uint8_t *cuts, const uint8_t *blinded, const int64_t *costs,
-                        int32_t *fitting, int64_t room, Level *levels, int64_t *depth, int64_t *nodes, int64_t steps) {
-    while (*depth >= 0) {
-        Level *level = levels + *depth;
+/* Go on to the next cover; at most `steps` columns are looked at before a pause. */
+EXPORTED int next_cover(Cover *cover, int64_t steps) {
+    const int64_t words = cover->words;
+    while (cover->depth >= 0) {
+        Level *level = cover->levels + cover->depth, *next = level + 1;
+        uint64_t *left = cover->left + cover->depth * words, *after = left + words;
         if (steps <= 0) return PAUSED;
         if (level->robot < 0) {
-            ++*nodes;
+            if (cover->nodes >= cover->most_nodes) return PAUSED;
+            cover->nodes++;
             steps -= level->end - level->start;
-            level->robot = rarest(level, fitting, groups);
+            level->robot = rarest(cover, level, left);
             level->position = level->start;
         }
-        uint32_t bit = (uint32_t)1 << level->robot;
-        int64_t at = level->position;
-        while (at < level->end && !(groups[fitting[at]] & bit)) at++;
+        int64_t at = level->position, word = level->robot >> 6;
+        while (at < level->end && !(cover->groups[cover->fitting[at] * words + word] >> (level->robot & 63) & 1)) at++;
         if (at >= level->end) {
-            --*depth;
+            cover->depth--;
             continue;
         }
-        int32_t column = fitting[at];
-        int64_t gap = level->gap - costs[column];
-        int32_t blind = level->blinded - blinded[column], cut = level->cut - cuts[column];
-        uint32_t left = level->left & ~groups[column], reached = 0;
+        int32_t column = cover->fitting[at];
+        const int64_t *cost = cover->costs + 3 * (int64_t)column;
+        *next = (Level){{level->room[0] - cost[0], level->room[1] - cost[1], level->room[2] - cost[2]}, level->end, level->end, 0, -1, -1};
         level->position = at + 1;
         level->column = column;
-        if (gap < 0 || blind < 0 || cut < 0) continue;
-        if (!left) return FOUND;
-        if (level->end + (level->end - level->start) > room) return NO_ROOM;
-        Level *next = level + 1;
-        *next = (Level){gap, level->end, level->end, 0, left, -1, blind, cut, -1, 0};
+        if (next->room[0] < 0 || next->room[1] < 0 || next->room[2] < 0) continue;
+        uint64_t open = 0;
+        for (int64_t w = 0; w < words; w++) open |= after[w] = left[w] & ~cover->groups[column * words + w];
+        if (!open) return FOUND;
+        if (level->end + (level->end - level->start) > cover->room) return NO_ROOM;
         int64_t k = level->start;
         for (; k < level->end; k++) {
-            int32_t other = fitting[k];
-            if (costs[other] > gap) break;
-            if (groups[other] & ~left || blinded[other] > blind || cuts[other] > cut) continue;
-            fitting[next->end++] = other;
-            reached |= groups[other];
+            const int32_t other = cover->fitting[k];
+            const int64_t *paid = cover->costs + 3 * (int64_t)other;
+            const uint64_t *group = cover->groups + other * words;
+            if (paid[0] > next->room[0]) break;
+            int fits = paid[1] <= next->room[1] && paid[2] <= next->room[2];
+            for (int64_t w = 0; w < words && fits; w++) fits = !(group[w] & ~after[w]);
+            if (fits) cover->fitting[next->end++] = other;
         }
         steps -= k - level->start;
-        if (reached == left) ++*depth;
+        if (next->end > next->start) cover->depth++; /* a robot that none of these has is found there at once */
     }
     return NONE;
 }

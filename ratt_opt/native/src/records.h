@@ -32,12 +32,22 @@ typedef struct {
 
 /* A level of the search of covers. */
 typedef struct {
-    int64_t gap;                       /* reduced cost that is left */
+    int64_t room[3];                   /* reduced cost, blinded robots and links that are left */
     int64_t start, end, position;      /* of the columns that fit, in `fitting` */
-    uint32_t left;                     /* robots not covered */
-    int32_t robot, blinded, cut;       /* the robot that is covered next, -1 until chosen; budgets left */
-    int32_t column, unused;            /* the column tried */
+    int32_t robot, column;             /* the robot that is covered next, -1 until chosen; the column tried */
 } Level;
+
+/* A search of covers. Columns are sorted by reduced cost. */
+typedef struct {
+    int64_t robots, words, room;       /* `words` of 64 robots each; `room` for columns that fit */
+    const uint64_t *groups;            /* (columns, words) */
+    const int64_t *costs;              /* (columns, 3) reduced cost, blinded robots, links, each >= 0 */
+    int32_t *fitting;                  /* (room) those that fit at each level, one after the other */
+    Level *levels;                     /* (robots + 2) */
+    uint64_t *left;                    /* (robots + 2, words) robots not covered */
+    int64_t *counts;                   /* (robots) spare */
+    int64_t depth, nodes, most_nodes;  /* depth -1 at the end; nodes so far, and before a pause */
+} Cover;
 
 /* Integer duals, in units of a link: `low`, `high` sums over sets of the first HALF robots and of the others, `unit` of
    a link, `blinding` of a blinded robot. */

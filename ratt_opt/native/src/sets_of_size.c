@@ -210,31 +210,6 @@ EXPORTED int list_sets_below(SetSearch *s, int64_t nodes, int64_t room, uint8_t 
     return code == FINISHED ? FINISHED : PAUSED;
 }
 
-/* A value that no set of `size` > 1 robots is below: a set of them has at least the average level of size / 2 copies of each of
-   its pairs, so the average over its robots of what they have with the size - 1 others that are lowest with them. `pairs`
-   (robots, robots), `spare` (width + robots).
-
-   Source: for bounds of this kind, Gilmore, Journal of SIAM 10 (1962); Lawler, Management Science 9 (1963). */
-EXPORTED double least_by_pairs(const Team *team, int64_t size, double *pairs, double *spare) {
-    int n = team->robots;
-    double before = error_before(team), *row = spare + team->targets * entries_of(team);
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < i; j++) {
-            add_information(team, team->prior, (double)size / 2, i, spare);
-            add_information(team, spare, (double)size / 2, j, spare);
-            double value = value_of(team, spare);
-            pairs[i * n + j] = pairs[j * n + i] = team->criterion == LOG_DET ? value : 1.0 / (before - value);
-        }
-    for (int i = 0; i < n; i++) {
-        for (int j = 0, k = 0; j < n; j++)
-            if (j != i) row[k++] = pairs[i * n + j];
-        pairs[i * n + i] = sum_of_least(row, n - 1, size - 1) / (double)(size - 1);
-    }
-    for (int i = 0; i < n; i++) row[i] = pairs[i * n + i];
-    double level = sum_of_least(row, n, size) / (double)size * (1 - ROUNDING);
-    return team->criterion == LOG_DET ? level : before - 1.0 / level;
-}
-
 /* A value that no set which is still open is below, unless it is at least the threshold. */
 EXPORTED double least_open(const SetSearch *s) {
     double level = INFINITY;

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.task import AttackMemory
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.exact import strongest_attack
-from ratt_opt.attackers.task import AttackMemory
 from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Attack, Problem
 

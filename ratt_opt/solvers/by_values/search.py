@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import readonly
+from ratt_opt.attack.task import CLOSED_WIDTH
 from ratt_opt.attackers.any_function import metered_problem
-from ratt_opt.attackers.task import CLOSED_WIDTH
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.curvatures.domains import domain_of
 from ratt_opt.curvatures.marginals import enumerate_marginals

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.families.group_exchanges import GroupExchanges
+from ratt_opt.attack.annealing import AnnealedAttacks
 from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
-from ratt_opt.attackers.by_prices.annealed_attacks import AnnealedAttacks
+from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
+from ratt_opt.attack.task import AttackBracket, AttackMemory
 from ratt_opt.attackers.exact import strongest_attack
-from ratt_opt.attackers.heuristics.bounded_rational import bounded_rational_attack
-from ratt_opt.attackers.heuristics.greedy import greedy_attack
-from ratt_opt.attackers.task import AttackBracket, AttackMemory
+from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
@@ -23,7 +22,7 @@ from ratt_opt.setfunctions.information import triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
 
@@ -106,7 +105,7 @@ def _at_their_best(problem: Problem) -> PackedTeam | None:
 
 
 SEARCHED_BY_SIZE = 12
-"""Larger teams with all links alike are attacked by exchanges first (``by_size``): fast and hardly ever wrong."""
+"""Larger teams with all links alike are attacked by exchanges first: fast and hardly ever wrong."""
 QUICK_SHARE = 0.05
 """Of the time left for one quick attack, and for exchanges next to known outcomes before: without a limit those on 100
 robots took up to two seconds each, and these all of 50 on 1,000; an exchange takes a third of one."""

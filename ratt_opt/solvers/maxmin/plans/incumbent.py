@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attackers.task import AttackResult
+    from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool

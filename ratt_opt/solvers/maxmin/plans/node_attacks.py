@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.families.group_exchanges import GroupExchanges
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
+from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
 from ratt_opt.graph.survivor_sizes import first_non_dominated_sizes
 from ratt_opt.setfunctions.information import triangles
 

@@ -1,0 +1,159 @@
+"""The exact attacker of teams whose sets of robots can all be looked at: thresholds, one after the other."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.columns import groups_of
+from ratt_opt.attack.sets_below import SetsBelow
+from ratt_opt.attack.team import Links, Team, has_loops, work_of_value
+from ratt_opt.attack.threshold import decide
+from ratt_opt.budget import OutOfBudget, Stop
+from ratt_opt.graph.communication import robots_of
+from ratt_opt.setfunctions.metered import Metered, unmetered
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.attack.task import AttackTask
+
+__all__ = ["LARGEST_LOOKED_AT", "LARGEST_VALUED", "AllSets", "sets_can_be_looked_at"]
+
+LARGEST_VALUED = 20
+"""Most robots whose sets are all valued where the compiled loops do not have the objective: 2**20 values."""
+LARGEST_LOOKED_AT, MOST_WORK = 24, 2.0**32
+"""Most robots whose sets the loops look at (2**24 bytes), and multiplications that valuing all of them may take."""
+STARTS, MOVES = 4, 400
+"""Annealed attacks before the first threshold, and moves for each pair of robots; on most networks of 24 robots in the
+corpus one of them is the worst attack, and elsewhere the first threshold finds it."""
+FEW = 12
+"""Robots whose sets are all valued at first: fewer values than annealing asks for."""
+BLOCK = 2**10
+"""Sets valued at once: what is lost where the budget ends. A block of a fast function takes some milliseconds."""
+FALL, SLACK = 1e-12, 1e-9
+"""Relative to the largest value: up to which a smaller one of a larger set is rounding; and what is taken off a bound
+found before, which is more than all falls on the way from set to set add up to."""
+FIRST_STEPS, MORE = 100_000_000, 4
+"""Of a search of covers, some tenths of a second, and times as many where it was left open; then a lower threshold is
+asked. No network of 16 to 24 robots that was tried, 75 of the corpus and 54 with random
+budgets, needed more than the first; a complete graph of 20 robots did."""
+LEVELS = 10
+"""Values that are told apart once the bracket counts as closed, one threshold each. Mostly there are none."""
+NARROW = 1e-3
+"""Relative width of the bracket below which a lower threshold is not asked."""
+
+
+def sets_can_be_looked_at(task: AttackTask) -> bool:
+    """Whether the loops have the objective and few enough robots, or all sets may be valued."""
+    n_robots, f = task.problem.n_robots, task.problem.objective
+    if not has_loops(f):
+        return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
+    is_soon = work_of_value(f.n_targets, f.dimension) * 2.0**n_robots <= MOST_WORK
+    return n_robots <= LARGEST_VALUED or (is_soon and n_robots <= LARGEST_LOOKED_AT)
+
+
+class AllSets:
+    """Narrows the bracket by thresholds; goes on where it ended.
+
+    The search looks for an attack below the best one known. If there is none, the bracket is closed; if that is left
+    open, lower thresholds raise the lower end first.
+    """
+
+    def __init__(self, task: AttackTask) -> None:
+        self.task = task
+        self._threat = task.problem.threat
+        self._team = Team.of(task.problem.objective, task.values.plan)
+        self._graph = groups_of(self._threat)
+        self._table, self._valued = np.empty(0 if self._team else 2**task.values.n), 0
+        self._below: SetsBelow | None = None
+        self._steps = FIRST_STEPS
+
+    def run(self) -> Stop:
+        """Narrow the task's bracket; raises ``OutOfBudget``."""
+        self.task.budget.check()
+        below, bracket = self._begun(), self.task.bracket
+        threshold, levels = bracket.goal, LEVELS
+        while not bracket.is_closed or (bracket.lower < bracket.upper and levels > 0):
+            answer = decide(self._threat, below, self._graph, threshold, self.task.budget, steps=self._steps)
+            if answer.is_reachable:
+                self._offer(answer.groups, answer.blinded)
+            elif answer.is_reachable is not None:
+                bracket.raise_lower(min(self._value(answer.following), bracket.upper))
+            if not bracket.is_closed:
+                threshold = self._next(threshold, is_open=answer.is_reachable is None)
+            elif answer.is_reachable is False:  # sets of about the same value are told apart if there are few
+                threshold, levels = float(np.nextafter(answer.level, np.inf)), levels - 1
+            else:
+                break
+        return Stop.EXHAUSTED
+
+    def _next(self, threshold: float, *, is_open: bool) -> float:
+        bracket = self.task.bracket
+        width = threshold - bracket.lower
+        if not is_open:
+            return bracket.goal
+        if width > NARROW * abs(bracket.upper):
+            return bracket.lower + width / 2
+        self._steps *= MORE
+        return bracket.goal
+
+    def _begun(self) -> SetsBelow:
+        if self._below is not None:
+            return self._below
+        if self._team is None:
+            self._tabulate()
+            self._forget_what_relied_on_order()
+        source: Team | FloatArray = self._table if self._team is None else self._team
+        if self._team is not None and self._team.robots <= FEW:
+            source = self._team.all_values()
+        starts = Starts(source, Links.of(self._threat), self._threat, moves=MOVES * self._graph.robots)
+        try:
+            for _ in range(STARTS):
+                starts.next(self.task.budget)
+        finally:
+            if starts.best is not None:
+                self.task.offer(starts.best.attack(self._threat))
+        groups, _ = self._graph.all(self.task.budget)
+        self._below = SetsBelow(source, self._threat.protected_robots, groups, self._threat.n_blinded)
+        return self._below
+
+    def _value(self, robots: int | None) -> float:
+        """Of a set by bit mask, rounded as attacks' values are; infinite without one."""
+        if robots is None:
+            return np.inf
+        return float(self._table[robots]) if self._team is None else self.task.values(robots_of(robots))
+
+    def _offer(self, groups: tuple[int, ...], blinded: int) -> None:
+        """Offer an attack, by bit masks."""
+        self.task.offer_split(map(robots_of, groups), robots_of(blinded))
+
+    def _tabulate(self) -> None:
+        """Value the sets that are not valued yet, by bit mask."""
+        values, budget, table = self.task.values, self.task.budget, self._table
+        if len(table) - self._valued > budget.evaluations_left:
+            raise OutOfBudget(Stop.EVALUATIONS)
+        asked = values if isinstance(values.objective, Metered) else Metered(values, budget)
+        bits = np.arange(values.n)
+        while self._valued < len(table):
+            masks = np.arange(self._valued, min(self._valued + BLOCK, len(table)))
+            table[masks] = asked.evaluate((masks[:, None] >> bits & 1).astype(np.bool_))
+            self._valued += len(masks)
+
+    def _forget_what_relied_on_order(self) -> None:
+        """What was proved before counts where sets are worth no less than those inside them.
+
+        Elsewhere it relied on what is not so, and what the table says relies on nothing.
+        """
+        bracket, table = self.task.bracket, self._table
+        largest = float(np.abs(table).max())
+        is_ordered = unmetered(self.task.problem.objective).is_non_decreasing or not _falls(table, FALL * largest)
+        proved = bracket.lower - SLACK * largest - bracket.rounding if is_ordered else -np.inf
+        bracket.lower = max(proved, float(table.min()))
+
+
+def _falls(table: FloatArray, rounding: float) -> bool:
+    """Whether a set is worth less than one inside it, by more than rounding."""
+    halves = (table.reshape(-1, 2, 1 << i) for i in range(len(table).bit_length() - 1))
+    return any(bool((pairs[:, 1] < pairs[:, 0] - rounding).any()) for pairs in halves)

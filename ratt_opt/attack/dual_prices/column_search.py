@@ -1,0 +1,196 @@
+"""Columns of negative reduced cost, or the proof that no column has one: searches that may be gone on with.
+
+A proof takes one search, yet every search finds a few columns that annealing missed. So dual prices with a reserve are
+repaired: they are lowered for such a column while the search goes on. No reduced cost falls, so what is closed stays
+closed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from time import monotonic
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from ratt_opt.attack.dual_prices.program import KnownGroup
+from ratt_opt.attack.pricing import BLINDED, UNIT, Column, GroupSearch, Order, Question
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.attack.dual_prices.program import GroupPrices
+    from ratt_opt.attack.pricing import DualPrices, Plan
+    from ratt_opt.budget import Budget
+
+__all__ = ["ColumnSearch", "Columns", "DualRepair", "Listed", "question_of"]
+
+
+@dataclass(slots=True, kw_only=True)
+class DualRepair:
+    """``prices`` of the groups in ``program`` that claim at least ``links``; ``learned`` : groups that were new."""
+
+    program: GroupPrices
+    threshold: float
+    prices: DualPrices
+    links: float
+    learned: int = 0
+
+    def fall(self, group: KnownGroup, budget: Budget) -> bool:
+        """Learn a group that pays, and lower the prices so that it does not; false where too few links are left."""
+        fresh = self.program.add([group])
+        self.learned += fresh
+        lower = self.program.lowered(self.threshold, self.prices, budget.seconds_left) if fresh else None
+        if lower is None or lower.links < self.links:
+            return False
+        self.prices = lower
+        return True
+
+
+T = TypeVar("T")
+
+HALF = 2 * UNIT
+"""Dual prices are about half links: each link that is cut leaves two groups."""
+BEHIND = 2
+"""Of the nodes of the order that ended last, what the other one has: a half."""
+KEPT = 6
+"""Searches that may be gone on with: of three vectors of prices, both orders."""
+FIRST_CHUNK, GLANCE = 500, 0.02
+"""Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Columns:
+    """``groups`` that pay, though prices fell for others; ``is_complete`` : with none, there is no such column."""
+
+    groups: list[KnownGroup]
+    is_complete: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Listed:
+    """Groups of small reduced cost: ``columns``; ``is_complete`` : no other has so little."""
+
+    columns: list[Column]
+    is_complete: bool
+
+
+def question_of(prices: DualPrices, threshold: float, most: int, limit: float) -> Question:
+    """The question for groups of reduced cost less than ``limit`` [links]; rounding makes every group cost no less."""
+    return Question(
+        threshold,
+        most,
+        _duals(prices),
+        int(np.ceil(prices.blinded * HALF)),
+        int(np.floor(limit * HALF)),
+    )
+
+
+class ColumnSearch:
+    """Searches for groups of one plan that pay.
+
+    Which order is short depends on the graph, the threshold and the prices, so both are tried, the one that ended last
+    first and furthest. If all of it was in vain and the same prices are asked again, both go on where they were.
+    """
+
+    orders = tuple(Order)
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self._orders = plan, list(self.orders)
+        self._begun: dict[tuple[Order, float, int, int, bytes], GroupSearch] = {}
+
+    def find(self, question: Question, budget: Budget, falling: DualRepair, *, nodes: int, room: int) -> Columns:
+        """Search for that many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
+
+        ``falling`` : the prices of the question, which fall for groups that pay, as far as they can; the search goes on
+        for the groups left over.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        for order in tuple(self._orders):
+            work = nodes if order is self._orders[0] else nodes // BEHIND
+            found = self._search(order, question, budget, falling, (work, room))
+            if found.is_complete:
+                self._orders.sort(key=lambda other: other is not order)
+            if found.is_complete or found.groups:
+                break
+        return found
+
+    def _search(
+        self, order: Order, question: Question, budget: Budget, falling: DualRepair, most: tuple[int, int]
+    ) -> Columns:
+        (nodes, room), below = most, float(np.nextafter(question.threshold, -np.inf))
+        question = replace(question, duals=np.minimum(question.duals, _duals(falling.prices)))
+        key = order, question.threshold, question.limit, question.blinding, question.duals.tobytes()
+        search = self._begun.pop(key, None) or GroupSearch(self.plan, question, order, _dearest_first(question))
+        pace, groups, fell = _Pace(search, nodes, budget), list[KnownGroup](), False
+        while not pace.is_over and len(groups) < room:
+            column = pace.ask(search.next)
+            if column is None:
+                continue
+            if column is False:
+                return Columns(groups=groups, is_complete=True)
+            group = KnownGroup(robots=column.robots, need=column.found, value=below)
+            if column.need == column.found and not groups and falling.fall(group, budget):
+                search.lower(_duals(falling.prices))
+                fell = True
+            else:
+                groups.append(group)
+                search.leave()
+        if not groups and not fell:
+            self._begun[key] = search
+            while len(self._begun) > KEPT:
+                del self._begun[next(iter(self._begun))]
+        return Columns(groups=groups, is_complete=False)
+
+    def listed(self, question: Question, budget: Budget, nodes: int, room: int) -> Listed:
+        """Groups of a question, at most ``room``, within that many nodes.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        robots, count, is_complete = self.plan.robots, 0, False
+        table = np.zeros((room, robots), np.int8), np.zeros((room, 4), np.int64)
+        with GroupSearch(self.plan, question, Order.MEMBERS, _dearest_first(question)) as search:
+            pace = _Pace(search, nodes, budget)
+            while not (pace.is_over or is_complete or count == room):
+                count, is_complete = pace.ask(lambda some: search.fill(some, table, count))  # noqa: B023
+        rows = zip(table[0][:count], table[1][:count].tolist(), strict=True)
+        columns = [
+            Column(robots=part > 0, blinded=part == BLINDED, need=need, found=found, cost=cost)
+            for part, (need, found, _, cost) in rows
+        ]
+        return Listed(columns=columns, is_complete=is_complete)
+
+
+def _duals(prices: DualPrices) -> IntArray:
+    return np.floor(prices.robot * HALF).astype(np.int64)
+
+
+def _dearest_first(question: Question) -> IntArray:
+    return np.argsort(-question.duals, kind="stable").astype(np.int64)
+
+
+class _Pace:
+    """Asks a search for as many nodes at a time as take some hundredths of a second; counts them in the budget."""
+
+    def __init__(self, search: GroupSearch, nodes: int, budget: Budget) -> None:
+        self._search, self._budget, self._chunk = search, budget, FIRST_CHUNK
+        self._stop = search.nodes + budget.nodes_left(max(nodes - search.nodes, 0))
+
+    @property
+    def is_over(self) -> bool:
+        return self._search.nodes >= self._stop
+
+    def ask(self, go_on: Callable[[int], T]) -> T:
+        """Raises :class:`OutOfBudget` : the time is up."""
+        self._budget.check()
+        before, began = self._search.nodes, monotonic()
+        answer = go_on(min(self._chunk, self._stop - before))
+        self._budget.nodes += self._search.nodes - before
+        self._chunk = 2 * self._chunk if monotonic() - began < GLANCE else max(self._chunk // 2, 1)
+        return answer

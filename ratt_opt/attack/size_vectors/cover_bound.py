@@ -1,0 +1,275 @@
+"""A lower bound on the best group of every family of groups of given sizes, and what each set costs against it.
+
+Give every robot a potential ``pi`` and every size ``s`` (``n_s`` groups of it) a weight ``lam_s >= 0`` with
+``sum_s n_s lam_s = 1``, and let ``u_s`` be the least ``lam_s value(S) - pi(S)`` over the sets of that size that may be
+used. Then the best group of a family is worth at least
+
+    sum_S lam_s value(S) >= sum_S (pi(S) + u_s) = sum of pi over the robots in the sets + sum_s n_s u_s,
+
+and the robots outside the sets, ``y`` of them, take away at most the ``y`` largest potentials. The best multipliers
+solve the dual of a linear program over all sets; sets enter it as they are violated. Any multipliers are valid.
+
+If every group of a family is worth less than ``t``, the same sum is below ``t``: what the sets and the robots outside
+take off the room between the bound and ``t`` must stay below it.
+"""
+
+from __future__ import annotations
+
+from ctypes import c_int64, c_void_p
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attack.size_vectors.disjoint_sets import Columns
+from ratt_opt.budget import Stop
+from ratt_opt.highs import LinearProgram, rows_of
+from ratt_opt.native.library import address, function
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.size_vectors.disjoint_sets import MaskArray, SetList
+    from ratt_opt.budget import Budget
+
+__all__ = ["CoverBound", "SetClasses", "cover_bound"]
+
+ROUNDS = 60
+ADDED, SEEDS = 40, 12
+"""Sets of each size that enter in one round, and of each robot at first: fewer rounds against larger programs."""
+ENOUGH = 1e-3
+"""Share of the room that is not worth another round."""
+SETS_OF_NODE = 100
+"""Sets that a round goes through in the time of a node."""
+MARGIN = 1e-9
+"""Room, relative to the threshold, beyond what is proved: against rounding in the costs."""
+BOX = 4.0
+
+
+@dataclass(frozen=True, slots=True)
+class SetClasses:
+    """``counts[c]`` disjoint sets are to be chosen from ``lists[c]``; the others of N robots are the rest.
+
+    ``taken`` : mask of robots that have their group already: they are in no set and not in the rest
+    """
+
+    n_robots: int
+    lists: tuple[SetList, ...] = ()
+    counts: tuple[int, ...] = ()
+    taken: int = 0
+
+    @property
+    def rest(self) -> int:
+        """Robots outside the sets."""
+        chosen = sum(k * low.size for k, low in zip(self.counts, self.lists, strict=True))
+        return self.n_robots - self.taken.bit_count() - chosen
+
+    @property
+    def free(self) -> BoolArray:
+        """(N,) robots that are not taken."""
+        return np.array([not self.taken >> i & 1 for i in range(self.n_robots)])
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether some list has too few sets."""
+        return any(len(low.masks) < k for k, low in zip(self.counts, self.lists, strict=True))
+
+    def and_sets(self, low: SetList, count: int) -> SetClasses:
+        """One more class."""
+        return replace(self, lists=(*self.lists, low), counts=(*self.counts, count))
+
+    def where(self, keeps: Callable[[SetList], SetList]) -> SetClasses:
+        """Only the sets that are kept."""
+        return replace(self, lists=tuple(keeps(low) for low in self.lists))
+
+    def having(self, c: int, mask: int) -> SetClasses:
+        """What is left once a set of class ``c`` is chosen."""
+        counts = [k - (d == c) for d, k in enumerate(self.counts)]
+        taken, chosen = self.taken | mask, np.uint64(mask)
+        lists = [low.where(low.masks & chosen == 0) for low in self.lists]
+        kept = [d for d, k in enumerate(counts) if k]
+        return replace(self, lists=tuple(lists[d] for d in kept), counts=tuple(counts[d] for d in kept), taken=taken)
+
+
+@dataclass(frozen=True, slots=True)
+class CoverBound:
+    """No family is worth less than ``bound``, by these ``potentials`` (N,) and ``weights`` (C,) of the sizes.
+
+    ``together`` : (N, N) how much a relaxed family has each two robots in one set
+    """
+
+    classes: SetClasses
+    bound: float
+    potentials: FloatArray
+    weights: FloatArray
+    together: FloatArray
+
+    @property
+    def _theta(self) -> float:
+        """The least potential of those that the rest takes at best."""
+        pi, rest = self.potentials[self.classes.free], self.classes.rest
+        return float(np.sort(pi)[len(pi) - rest]) if rest else float(pi.max(initial=0.0))
+
+    @property
+    def rest_costs(self) -> FloatArray:
+        """(N,) cost of having each robot in the rest."""
+        return np.maximum(self._theta - self.potentials, 0.0)
+
+    def room(self, threshold: float) -> float:
+        """What the sets and robots of a family below the threshold cost at most."""
+        return threshold - self.bound + MARGIN * abs(threshold)
+
+    def columns(self, threshold: float) -> Columns:
+        """The sets that a family with all groups below the threshold may use, with their costs."""
+        room, kept_potentials = self.room(threshold), np.minimum(self.potentials, self._theta)
+        parts = []
+        for c, low in enumerate(self.classes.lists):
+            least = float((self.weights[c] * low.values - _sums(low.masks, self.potentials)).min())
+            costs = self.weights[c] * threshold - least - _sums(low.masks, kept_potentials)
+            kept = (costs < room) & (low.values < threshold)
+            parts.append((low.masks[kept], low.values[kept], np.maximum(costs[kept], 0.0), np.full(kept.sum(), c)))
+        masks, values, costs, classes = (np.concatenate(part) for part in zip(*parts, strict=True))
+        n_robots, first = self.classes.n_robots, _first_bits(masks)
+        order = np.lexsort((costs, first, classes))
+        keys = (classes * (n_robots + 1) + first)[order]
+        places = np.arange(len(parts))[:, None] * (n_robots + 1) + np.arange(n_robots + 1)
+        return Columns(
+            masks=masks[order],
+            values=values[order],
+            costs=costs[order],
+            starts=np.searchsorted(keys, places).astype(np.int64),
+            counts=np.array(self.classes.counts, dtype=np.int64),
+            rest_costs=self.rest_costs,
+            room=room,
+            taken=self.classes.taken,
+        )
+
+
+def cover_bound(classes: SetClasses, threshold: float, budget: Budget) -> CoverBound:
+    """Bound every family of the classes; none of the lists is empty.
+
+    Parameters
+    ----------
+    threshold : no better bound is needed
+
+    Raises
+    ------
+    OutOfBudget : the time is up before any bound is known.
+    """
+    program = _DualProgram(classes, max(abs(threshold), 1e-300))
+    best = None
+    n_sets = sum(len(low.masks) for low in classes.lists)
+    for _ in range(ROUNDS):
+        budget.spend(1 + n_sets // SETS_OF_NODE)
+        claim = program.solve()
+        if claim is None:
+            break
+        potentials, weights, claimed = claim
+        bound = program.bound(potentials, weights)
+        if best is None or bound > best.bound:
+            best = CoverBound(classes, bound, potentials, weights, program.together())
+        if best.bound >= threshold or claimed - best.bound <= ENOUGH * max(threshold - best.bound, 0.0):
+            break
+        if budget.stop() not in {None, Stop.NODES}:
+            break
+    if best is None:
+        budget.check()
+        return CoverBound(classes, -np.inf, *program.without_claim())
+    return best
+
+
+class _DualProgram:
+    """The dual over the sets that entered; columns: potentials, least reduced values, weights, in units of ``scale``.
+
+    If nobody is in the rest, potentials of all robots may be shifted together; if no family exists, they are unbounded.
+    The box keeps both in bounds.
+    """
+
+    def __init__(self, classes: SetClasses, scale: float) -> None:
+        n, k = classes.n_robots, len(classes.lists)
+        self.classes, self.scale = classes, scale
+        number = np.array(classes.counts, dtype=np.float64)
+        self._cost = np.concatenate([np.ones(n), number, np.zeros(k)])
+        lower = np.concatenate([-BOX * classes.free, np.full(k, -BOX * n), np.zeros(k)])
+        upper = np.concatenate([BOX * classes.free * (classes.rest == 0), np.full(k, BOX * n), np.ones(k)])
+        sizes = list(range(n + k, n + 2 * k)), number.tolist()
+        self._program = LinearProgram(self._cost, lower, upper, rows=rows_of([sizes], [1.0], [1.0]), maximise=True)
+        self._entered: dict[tuple[int, int], None] = {}
+        self._duals = np.zeros(0)
+        self._enter(self._seeds())
+
+    def solve(self) -> tuple[FloatArray, FloatArray, float] | None:
+        """Potentials, weights, and the value that the program claims for the sets that entered."""
+        claim = self._program.solve()
+        if not len(claim.x):
+            return None
+        self._duals = np.abs(claim.duals[1:])
+        n, k = self.classes.n_robots, len(self.classes.lists)
+        weights = np.maximum(claim.x[n + k :], 0.0)
+        total = float(weights @ self.classes.counts)
+        if not total > 0:
+            return None
+        return claim.x[:n] * self.scale, weights / total, float(self._cost @ claim.x) * self.scale
+
+    def bound(self, potentials: FloatArray, weights: FloatArray) -> float:
+        """What these multipliers prove; the sets that hold it down enter the program."""
+        classes, least = self.classes, []
+        fresh: list[tuple[int, int]] = []
+        for c, low in enumerate(classes.lists):
+            reduced = weights[c] * low.values - _sums(low.masks, potentials)
+            few = min(ADDED, len(reduced))
+            fresh.extend((c, int(k)) for k in np.argpartition(reduced, few - 1)[:few])
+            least.append(float(reduced.min()))
+        self._enter(fresh)
+        own = np.sort(potentials[classes.free])
+        inside, sizes = float(own[: len(own) - classes.rest].sum()), np.abs(least) @ classes.counts
+        rounding = 1e-14 * float(np.abs(own).sum() + sizes)
+        return inside + float(np.array(classes.counts) @ np.array(least)) - rounding
+
+    def together(self) -> FloatArray:
+        """(N, N) weight of the sets that hold each two robots, in the relaxed family that the program claims."""
+        n = self.classes.n_robots
+        masks = np.array([self.classes.lists[c].masks[k] for c, k in self._entered][: len(self._duals)], np.uint64)
+        members = (masks[:, None] >> np.arange(n, dtype=np.uint64) & np.uint64(1)).astype(np.float64)
+        return np.asarray(members.T @ (self._duals[: len(masks), None] * members))
+
+    def without_claim(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Potentials, weights and fractions that say nothing."""
+        n, counts = self.classes.n_robots, self.classes.counts
+        return np.zeros(n), np.full(len(counts), 1.0 / sum(counts)), np.zeros((n, n))
+
+    def _enter(self, sets: Iterable[tuple[int, int]]) -> None:
+        fresh = [one for one in dict.fromkeys(sets) if one not in self._entered]
+        self._entered.update(dict.fromkeys(fresh))
+        rows = [self._row(c, k) for c, k in fresh]
+        if rows:
+            self._program.add_rows(rows_of(rows, np.full(len(rows), -np.inf), np.zeros(len(rows))))
+
+    def _row(self, c: int, k: int) -> tuple[list[int], list[float]]:
+        """``pi(S) + u_c - weight_c value(S) <= 0``."""
+        n, low = self.classes.n_robots, self.classes.lists[c]
+        mask = int(low.masks[k])
+        columns = [*(i for i in range(n) if mask >> i & 1), n + c, n + len(self.classes.lists) + c]
+        return columns, [1.0] * (low.size + 1) + [-float(low.values[k]) / self.scale]
+
+    def _seeds(self) -> Iterable[tuple[int, int]]:
+        """The lowest sets of each size, and the lowest with each robot."""
+        for c, low in enumerate(self.classes.lists):
+            yield from ((c, k) for k in range(min(SEEDS, len(low.masks))))
+            for i in range(self.classes.n_robots):
+                having = np.flatnonzero(low.masks >> np.uint64(i) & np.uint64(1))[: SEEDS // 4]
+                yield from ((c, int(k)) for k in having)
+
+
+def _sums(masks: MaskArray, amounts: FloatArray) -> FloatArray:
+    """(K,) sum of the amounts of the robots in each mask."""
+    sums = np.zeros(len(masks))
+    call = function("sums_of_sets", None, c_int64, *[c_void_p] * 3)
+    call(len(masks), *map(address, (np.ascontiguousarray(masks), np.ascontiguousarray(amounts), sums)))
+    return sums
+
+
+def _first_bits(masks: MaskArray) -> IntArray:
+    """(K,) position of the lowest bit of each mask."""
+    return np.asarray(np.bitwise_count((masks & (~masks + np.uint64(1))) - np.uint64(1)), dtype=np.int64)

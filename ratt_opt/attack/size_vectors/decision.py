@@ -1,0 +1,218 @@
+"""Is there an attack on a complete graph that leaves less than a threshold? By vectors of group sizes.
+
+Some group of an attack is the largest. For each size that it may have, smallest first, all sets below the threshold are
+found. If there is none, larger groups have none either. If there are few, the other groups are packed among the robots
+that each of them leaves. If there are many, or packing takes long, a linear program bounds all families of a vector at
+once (``family_search.py``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attack.annealing import Partition
+from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.size_vectors.disjoint_sets import MOST_ROBOTS
+from ratt_opt.attack.size_vectors.family_search import FamilySearch, SetLists
+from ratt_opt.attack.threshold_search import Answer, Threshold
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.survivor_sizes import Sizes
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["Packer", "Packing", "SizeDecision"]
+
+PACKED = 2
+"""Groups of at least two robots, besides the largest, that are packed."""
+FEW, PACKING = 300, 3_000
+"""Sets of the size of the largest group around which the others are packed one by one, and nodes of one packing
+question, before all families are searched at once."""
+NODES_OF_SET, NODES_OF_PACKING = 300, 30
+"""The same, a share of a threshold's nodes, in teams of which families are not searched."""
+
+
+@dataclass(slots=True)
+class _Sets:
+    """A search of sets, the ``values`` of those that it found, and whether these were too many to go on."""
+
+    search: LeastSetSearch
+    values: dict[frozenset[int], float] = field(default_factory=dict)
+    are_many: bool = False
+
+    @property
+    def least(self) -> float:
+        """No set of the size is worth less."""
+        return min(self.search.lower, self.search.threshold, *self.values.values())
+
+
+class SizeDecision:
+    """Decides thresholds for one plan."""
+
+    def __init__(self, team: PackedTeam, threat: Threat, vectors: Sequence[Sizes]) -> None:
+        self._team, self._threat, self._vectors = team, threat, vectors
+        self._order = np.argsort(-team.single, kind="stable")
+        self._smallest = min((vector[0] for vector in vectors if vector), default=0)
+        self._sets: dict[int, _Sets] = {}
+        """Searches of sets of each size."""
+
+    @property
+    def least(self) -> float:
+        """No attack leaves less: some group has at least the smallest size that a largest group may have."""
+        return self._sets[self._smallest].least if self._smallest in self._sets else -np.inf
+
+    def learn(self, partition: Partition) -> None:
+        """Nothing: attacks say nothing about other thresholds."""
+
+    def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
+        """Decide one threshold; ``OPEN`` after that many nodes.
+
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        with budget.stage(max_nodes=nodes) as part:
+            part.spend()
+            return self._decide(threshold, part, nodes)
+        return Answer(verdict=Threshold.OPEN)
+
+    def _decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
+        lists, is_open, few, effort = SetLists(self._team, self._order), False, FEW, PACKING
+        if len(self._order) > MOST_ROBOTS:
+            few, effort = nodes // NODES_OF_SET, nodes // NODES_OF_PACKING
+        for size in sorted({vector[0] for vector in self._vectors}):
+            sets = self._few_sets(size, threshold, budget, few)
+            if sets == []:
+                break
+            for vector in [vector for vector in self._vectors if vector[0] == size]:
+                groups, is_decided = self._packed(sets, vector, threshold, budget, effort)
+                if not is_decided and groups is None:
+                    groups, is_decided = self._searched(lists, vector, threshold, budget)
+                if groups is not None:
+                    return Answer(verdict=Threshold.REACHED, partition=self._partition(groups, threshold))
+                is_open = is_open or not is_decided
+        return Answer(verdict=Threshold.OPEN if is_open else Threshold.REFUTED)
+
+    def _few_sets(self, size: int, threshold: float, budget: Budget, most: int) -> list[frozenset[int]] | None:
+        """All sets below the threshold, lowest first; ``None`` if there are more than ``most``.
+
+        A search that was begun with a higher threshold goes on, as far as this one needs, unless it found many sets.
+        """
+        sets = self._sets.get(size)
+        if sets is None or sets.search.threshold < threshold or (sets.are_many and sets.search.threshold > threshold):
+            floor = -np.inf if sets is None else sets.least
+            sets = self._sets[size] = _Sets(LeastSetSearch(self._team, size, threshold, floor))
+        below = {one for one, value in sets.values.items() if value < threshold}
+        for one in sets.search.run(budget) if sets.search.lower < threshold and len(below) <= most else ():
+            if one is not None:
+                value = sets.values[one] = self._team.value(one)
+                below |= {one} if value < threshold else set()
+            if len(below) > most:
+                break
+            if sets.search.lower >= threshold:
+                break
+        sets.are_many = len(below) > most
+        return None if sets.are_many else sorted(below, key=sets.values.__getitem__)
+
+    def _packed(
+        self, sets: list[frozenset[int]] | None, vector: Sizes, threshold: float, budget: Budget, effort: int
+    ) -> tuple[tuple[frozenset[int], ...] | None, bool]:
+        """Groups of a vector around one of its largest ones; whether there are none for sure if there are none."""
+        if sets is None or sum(size > 1 for size in vector[1:]) > PACKED:
+            return None, False
+        packer, everyone = Packer(self._team, self._must, budget), frozenset(range(len(self._order)))
+        for largest in sets:
+            packing = packer.pack(everyone - largest, vector[1:], threshold, effort)
+            if packing.groups is not None:
+                return (largest, *packing.groups), True
+            if not packing.decided:
+                return None, False
+        return None, True
+
+    def _searched(
+        self, lists: SetLists, vector: Sizes, threshold: float, budget: Budget
+    ) -> tuple[tuple[frozenset[int], ...] | None, bool]:
+        if len(self._order) > MOST_ROBOTS:
+            return None, False
+        must = sum(1 << k for k, robot in enumerate(self._order.tolist()) if robot in self._must)
+        search = FamilySearch(lists, vector, n_blinded=self._threat.n_blinded, must=must, threshold=threshold)
+        found = next(search.run(budget), None)
+        return found, not search.is_open
+
+    @property
+    def _must(self) -> frozenset[int]:
+        return self._threat.protected_robots
+
+    def _partition(self, groups: Iterable[frozenset[int]], threshold: float) -> Partition:
+        """The blinded robots stand in the largest group, which keeps most links."""
+        label = np.zeros(len(self._order), dtype=np.int64)
+        blind = np.ones(len(label), dtype=np.bool_)
+        for g, group in enumerate(sorted(groups, key=len, reverse=True)):
+            label[list(group)], blind[list(group)] = g, False
+        return Partition(group=label, blind=blind, value=threshold)
+
+
+@dataclass(frozen=True, slots=True)
+class Packing:
+    """``groups`` below the threshold, or ``None``; ``decided`` says whether ``None`` is proved."""
+
+    groups: tuple[frozenset[int], ...] | None
+    decided: bool = True
+
+
+@dataclass(slots=True)
+class Packer:
+    """Packs groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
+
+    team: PackedTeam
+    must: frozenset[int]
+    budget: Budget
+
+    def pack(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int = 0) -> Packing:
+        """Find disjoint groups of these sizes among ``available``, each worth less than ``threshold``.
+
+        Weakest robots first; exact where the sets of the largest size are listed, or ``effort`` nodes suffice.
+        """
+        weak = frozenset(i for i in available if self.team.single[i] < threshold)
+        missing = self.must & available
+        # No group below the threshold holds a robot that alone reaches it.
+        if not missing <= weak or not len(missing) <= sum(sizes) <= len(weak):
+            return Packing(None)
+        quick = self._weakest(weak, sizes, threshold)
+        # Robots on their own are all weak enough here, so only larger groups are searched for.
+        if quick is not None or not sizes or sizes[0] == 1:
+            return Packing(quick)
+        return self._search(weak, sizes, threshold, effort)
+
+    def _weakest(self, available: frozenset[int], sizes: Sizes, threshold: float) -> tuple[frozenset[int], ...] | None:
+        """The weakest robots in order, the largest group first."""
+        order = sorted(available, key=lambda i: (i not in self.must, self.team.single[i], i))[: sum(sizes)]
+        order.sort(key=lambda i: (self.team.single[i], i))
+        groups = []
+        for size in sizes:
+            group, order = frozenset(order[:size]), order[size:]
+            if self.team.value(group) >= threshold:
+                return None
+            groups.append(group)
+        return tuple(groups)
+
+    def _search(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int) -> Packing:
+        """Each set of the largest size, and the other groups from what it leaves."""
+        outside, decided = frozenset(range(len(self.team.single))) - available, True
+        with self.budget.stage(max_nodes=effort) as part:
+            others = replace(self, budget=part)
+            for found in LeastSetSearch(self.team, sizes[0], threshold, outside=outside).run(part):
+                if found is None:
+                    continue
+                packing = others.pack(available - found, sizes[1:], threshold, effort)
+                if packing.groups is not None:
+                    return Packing((found, *packing.groups))
+                decided = decided and packing.decided
+            return Packing(None, decided)
+        return Packing(None, decided=False)

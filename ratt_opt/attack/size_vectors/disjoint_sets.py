@@ -1,0 +1,266 @@
+"""Lists of all sets of one size below a threshold, as bit masks, and disjoint sets from such lists.
+
+Sets are found by the search in depth of ``least_sets/sets_of_size.py``. Disjoint ones of given sizes, all below the
+threshold, are found by an exact search in C (``native/src/disjoint.c``). Every set has a cost, what it takes off the
+room between the threshold and a bound on the whole (``cover_bound.py``); a choice that costs more than the room has no
+completion.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_int32, c_int64, c_uint64, c_void_p
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ratt_opt.attack.least_sets.sets_of_size import SetSearch
+from ratt_opt.native.library import address, checked, function
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.budget import Budget
+
+    MaskArray = NDArray[np.uint64]
+
+__all__ = ["MOST_ROBOTS", "Columns", "DisjointSets", "Filter", "Rest", "SetList", "list_sets"]
+
+MOST_ROBOTS = 63
+"""A set is one 64-bit mask."""
+NODES_OF_A_LOOK = 10_000
+"""Partial sets between two looks at the clock: some hundredths of a second."""
+LONGEST = 200
+"""Looks at the clock before a list is given up, ten seconds or so: what is that long to list is longer to search."""
+MOST_SETS = 2_000_000
+"""Sets listed at most: 32 MiB, and about a second for each bound that goes through them."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetList:
+    """``masks`` (K,) of the sets of ``size`` robots found, and their ``values`` (K,), lowest first."""
+
+    size: int
+    masks: MaskArray
+    values: FloatArray
+
+    def where(self, kept: BoolArray) -> SetList:
+        """Those that are kept (K,)."""
+        return SetList(self.size, self.masks[kept], self.values[kept])
+
+    def below(self, threshold: float) -> SetList:
+        """Those worth less than a threshold."""
+        count = int(np.searchsorted(self.values, threshold))
+        return SetList(self.size, self.masks[:count], self.values[:count])
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """Only sets worth less than ``threshold`` whose robots' ``costs`` (F,) add up to less than ``room`` are listed."""
+
+    threshold: float
+    costs: FloatArray
+    room: float = np.inf
+
+    @classmethod
+    def below(cls, threshold: float, n_robots: int) -> Filter:
+        """No costs."""
+        return cls(threshold, np.zeros(n_robots))
+
+
+def list_sets(team: PackedTeam, order: IntArray, size: int, wanted: Filter, budget: Budget) -> SetList | None:
+    """Every set of ``size`` robots that is wanted, or ``None`` if they are too many or too long to find.
+
+    Parameters
+    ----------
+    order : (F,) robots to choose from, F <= 63; bit ``k`` of a mask is ``order[k]``; strongest first is best, as
+        the search goes from the last to the first
+
+    Raises
+    ------
+    OutOfBudget : the time is up, or too few nodes are left for the next look at the clock.
+    """
+    listing = _Listing(team, order, size, wanted)
+    for _ in range(LONGEST):
+        most = budget.nodes_left(NODES_OF_A_LOOK)
+        before = listing.nodes
+        finished = listing.go_on(most)
+        budget.nodes += listing.nodes - before
+        if finished:
+            return listing.found()
+        if listing.count > MOST_SETS:
+            return None
+    return None
+
+
+class _Listing:
+    """A search that goes on from where it ended."""
+
+    def __init__(self, team: PackedTeam, order: IntArray, size: int, wanted: Filter) -> None:
+        costs = np.ascontiguousarray(wanted.costs, dtype=np.float64) if np.isfinite(wanted.room) else None
+        self._search = SetSearch(team.native(order), size, wanted.threshold, costs=costs, limit=wanted.room)
+        self._size, self.count = size, 0
+        self._masks, self._values = np.zeros(4096, np.uint64), np.zeros(4096)
+
+    @property
+    def nodes(self) -> int:
+        """Partial sets looked at."""
+        return self._search.nodes
+
+    def go_on(self, nodes: int) -> bool:
+        """Whether every set is decided."""
+        stop = self._search.nodes + nodes
+        while self._search.nodes < stop and self.count <= MOST_SETS:
+            if self.count == len(self._masks):
+                self._masks = np.concatenate([self._masks, np.zeros_like(self._masks)])
+                self._values = np.concatenate([self._values, np.zeros_like(self._values)])
+            left = stop - self._search.nodes
+            self.count, is_finished = self._search.fill(left, self._masks, self._values, self.count)
+            if is_finished:
+                return True
+        return False
+
+    def found(self) -> SetList:
+        """The sets, lowest first."""
+        ranked = np.argsort(self._values[: self.count], kind="stable")
+        return SetList(self._size, self._masks[ranked], self._values[ranked])
+
+
+WORK, NODES = 4_000_000, 500
+"""Sets looked at between two looks at the clock, some hundredths of a second, and nodes that these count as."""
+MEMORY = 1 << 20
+"""States remembered; later ones replace earlier ones."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Columns:
+    """Sets of each size of a vector, by their lowest robot, cheapest first.
+
+    ``masks``, ``values``, ``costs`` : (K,); ``starts`` : (C, N + 1), those of size ``c`` whose lowest bit is ``r`` are
+    ``starts[c, r]:starts[c, r + 1]``; ``counts`` : (C,) sets to choose of each size; ``rest_costs`` : (N,) of leaving
+    robot ``r`` in the rest; ``room`` : costs have to stay below this; ``taken`` : mask of robots that are in neither
+    """
+
+    masks: MaskArray
+    values: FloatArray
+    costs: FloatArray
+    starts: IntArray
+    counts: IntArray
+    rest_costs: FloatArray
+    room: float
+    taken: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Rest:
+    """The robots outside the sets: ``size`` of them, ``n_blinded`` of these blinded, the others left alone.
+
+    ``single`` : (N,) individual values by bit, largest first; ``must`` : mask of the robots that cannot be blinded
+    """
+
+    size: int
+    n_blinded: int
+    single: FloatArray
+    must: int = 0
+
+    def alone(self, rest: int) -> float:
+        """Largest individual value in a rest (mask) whose strongest robots are blinded; -inf if none is left."""
+        blinded = self.n_blinded
+        for i, value in enumerate(self.single.tolist()):
+            if rest >> i & 1:
+                if blinded and not self.must >> i & 1:
+                    blinded -= 1
+                else:
+                    return float(value)
+        return -np.inf
+
+
+class ChoiceRecord(Structure):
+    """``Choice`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_uint64) for name in ("decided", "rest")),
+        *((name, c_int64) for name in ("next", "chosen")),
+        *((name, c_double) for name in ("cost", "value")),
+        ("counts", c_void_p),
+        *((name, c_int32) for name in ("option", "places", "kept", "unused")),
+    ]
+
+
+class DisjointRecord(Structure):
+    """``DisjointSets`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("robots", "classes", "rest", "n_blinded")),
+        *((name, c_void_p) for name in ("masks", "values", "costs", "starts", "rest_costs", "single")),
+        ("must", c_uint64),
+        *((name, c_double) for name in ("threshold", "room")),
+        *((name, c_int64) for name in ("remembered", "depth", "found")),
+        *((name, c_void_p) for name in ("memory", "stack", "best")),
+    ]
+
+
+class DisjointSets:
+    """Finds the sets whose largest value is least; :meth:`run` goes on until all families are decided.
+
+    Parameters
+    ----------
+    threshold : only families of a smaller largest value count
+    """
+
+    def __init__(self, columns: Columns, rest: Rest, threshold: float) -> None:
+        robots, classes = len(rest.single), len(columns.counts)
+        self._columns = columns
+        self._arrays = (
+            checked("masks", columns.masks, np.uint64, columns.masks.shape),
+            checked("values", columns.values, np.float64, columns.masks.shape),
+            checked("costs", columns.costs, np.float64, columns.masks.shape),
+            checked("starts", columns.starts, np.int64, (classes, robots + 1)),
+            checked("rest_costs", np.ascontiguousarray(columns.rest_costs), np.float64, (robots,)),
+            checked("single", np.ascontiguousarray(rest.single), np.float64, (robots,)),
+        )
+        self._memory, self._best = np.zeros((MEMORY, 2), np.uint64), np.zeros(robots + 1, np.int64)
+        self._counts = np.zeros((robots + 2, classes), np.int32)
+        self._counts[0] = columns.counts
+        self._stack = (ChoiceRecord * (robots + 2))()
+        for level, counts in zip(self._stack, self._counts, strict=True):
+            level.counts = address(counts)
+        first = self._stack[0]
+        first.decided, first.option, first.value = columns.taken, -1, -np.inf
+        first.places, first.kept = rest.size, rest.size - rest.n_blinded
+        self._record = DisjointRecord(
+            robots, classes, rest.size, rest.n_blinded, *map(address, self._arrays), rest.must, threshold, columns.room
+        )
+        self._record.remembered, self._record.memory, self._record.best = (
+            MEMORY,
+            address(self._memory),
+            address(self._best),
+        )
+        self._record.stack = ctypes.addressof(self._stack)
+
+    @property
+    def value(self) -> float:
+        """Least largest value found, or the threshold."""
+        return float(self._record.threshold)
+
+    def family(self) -> list[int]:
+        """Masks of the best family found; empty if none was."""
+        return [int(mask) for mask in self._columns.masks[self._best[: self._record.found]]]
+
+    def run(self, budget: Budget, looks: float = np.inf) -> bool:
+        """Search to the end (true), or until the clock was looked at so often.
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or no node is left.
+        """
+        call = function("search_disjoint", c_int, POINTER(DisjointRecord), c_int64)
+        while looks > 0:
+            budget.spend(budget.nodes_left(NODES))
+            if call(byref(self._record), WORK):
+                return True
+            looks -= 1
+        return False

@@ -1,0 +1,194 @@
+"""Weak families of groups of each vector of sizes, by exchanges from several starts: attacks, no claim."""
+
+from __future__ import annotations
+
+from ctypes import POINTER, byref, c_double, c_int, c_int64, c_void_p
+from operator import attrgetter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attack.least_sets.exchanges import descended, weak_sets_of_size
+from ratt_opt.attack.team import TeamRecord
+from ratt_opt.native.library import address, function
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from ratt_opt._validation import BoolArray, IntArray
+    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.attack.task import AttackTask
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.survivor_sizes import Sizes
+
+__all__ = ["GroupExchanges", "WeakFamilies", "weakest_of"]
+
+EXCHANGES_SHARE, SETTLED_SHARE, STRIDE = 0.2, 0.7, 20
+"""Of the time, at most spent on exchanges before the bounds, and of that, on families of all vectors before a few are
+shaken: large teams get fewer vectors, the first ones so far apart."""
+
+SHAKEN, SHAKES = 6, 40
+"""Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
+
+LARGE = 20_000_000
+"""Exchanges of the largest group times targets from which it starts where linear descent ends (a fifth of a second)."""
+
+WEAK_SETS = 3
+"""Weak sets of its size that a largest group is started from where it is clearly the best one."""
+
+CLEARLY = 0.5
+"""Size of the second group, over the largest, up to which that one is clearly the best."""
+
+
+class WeakFamilies:
+    """Finds families that no exchange makes weaker."""
+
+    def __init__(self, task: AttackTask, team: PackedTeam) -> None:
+        self._team, self._budget = team, task.budget
+        self._must = np.isin(np.arange(len(team.single)), list(task.problem.threat.protected_robots))
+        self._weak: dict[int, list[frozenset[int]]] = {}
+
+    def exchanged(self, vectors: list[Sizes]) -> list[GroupExchanges]:
+        """A family of each vector, weakest first, as far as the time goes.
+
+        Raises
+        ------
+        OutOfBudget : the time is up before the first.
+        """
+        families: list[GroupExchanges] = []
+        part = self._budget.part(EXCHANGES_SHARE)
+        first = part.part(SETTLED_SHARE)
+        for sizes in _spread(vectors):
+            if families and first.stop() is not None:
+                break
+            self._budget.check()
+            family = self._settled(sizes, first)
+            for largest in () if first.is_over else self._weak_largest(sizes, first):
+                if first.is_over:
+                    break
+                family.around(largest, first)
+            families.append(family)
+        families.sort(key=attrgetter("value"))
+        for family in families[:SHAKEN]:
+            family.shake(SHAKES, part)
+        return sorted(families, key=attrgetter("value"))
+
+    def _settled(self, sizes: Sizes, budget: Budget) -> GroupExchanges:
+        team = self._team
+        family = GroupExchanges(team, sizes, self._must)
+        largest, (n_robots, n_targets) = sizes[0], team.information.shape[:2]
+        if largest * (n_robots - largest) * n_targets > LARGE:
+            weakest = np.argsort(team.single, kind="stable")[:largest]
+            family.around(frozenset(descended(team, weakest).tolist()), budget)
+        if not np.isfinite(family.value):
+            family.weakest(budget)
+        return family
+
+    def _weak_largest(self, sizes: Sizes, budget: Budget) -> list[frozenset[int]]:
+        """Weak sets of the size of a largest group that alone decides what a family is worth."""
+        if _second(sizes) > CLEARLY * (largest := sizes[0]):
+            return []
+        if largest not in self._weak:
+            self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[:WEAK_SETS]
+        return self._weak[largest]
+
+
+def _spread(vectors: list[Sizes]) -> list[Sizes]:
+    """All of them, those that are far apart first: there may be time for some only."""
+    return [sizes for first in range(STRIDE) for sizes in vectors[first::STRIDE]]
+
+
+def weakest_of(families: list[GroupExchanges]) -> tuple[frozenset[int], ...]:
+    """The groups of the weakest family."""
+    return min(families, key=attrgetter("value")).groups()
+
+
+def _second(sizes: Sizes) -> int:
+    return sizes[1] if len(sizes) > 1 else 0
+
+
+STRENGTH = 3
+"""Random exchanges of one shake: one is often undone, many leave nothing of the family."""
+SEED = 0
+AT_ONCE = 20_000_000
+"""Pairs of robots times targets that compiled loops go through between two looks at the clock (a fifth of a second)."""
+SHARE = 1e-3
+"""Weight of the two groups' sum beside the largest value."""
+
+
+class GroupExchanges:
+    """The weakest family known of one vector of sizes; deterministic.
+
+    Parameters
+    ----------
+    sizes : of the groups of unblinded robots, largest first
+    must : (N,) robots that cannot be blinded
+    """
+
+    def __init__(self, team: PackedTeam, sizes: Sizes, must: BoolArray) -> None:
+        self._team, self._must, self.sizes = team, must, sizes
+        self._rng = np.random.default_rng(SEED)
+        self._home: IntArray = np.zeros(len(team.single), dtype=np.int64)
+        """(N,) group of each robot, 0 for those that are blinded, 1.. for the sizes in order."""
+        self.value = np.inf
+        """Of the best group."""
+
+    def weakest(self, budget: Budget) -> None:
+        """Start from the individually weakest robots, the weakest in the largest group; as far as time allows."""
+        rising = np.argsort(self._team.single, kind="stable")
+        # Those that cannot be blinded see in any case.
+        seeing = np.concatenate([rising[self._must[rising]], rising[~self._must[rising]]])[: sum(self.sizes)]
+        home = np.zeros_like(self._home)
+        home[rising[np.isin(rising, seeing)]] = np.repeat(np.arange(1, len(self.sizes) + 1), self.sizes)
+        self._improve(home, budget)
+
+    def around(self, largest: frozenset[int], budget: Budget) -> None:
+        """Start from a largest group, and the individually weakest others."""
+        rising = np.argsort(self._team.single, kind="stable")
+        others = rising[~np.isin(rising, list(largest))]
+        others = np.concatenate([others[self._must[others]], others[~self._must[others]]])
+        home = np.zeros_like(self._home)
+        home[list(largest)] = 1
+        places = np.repeat(np.arange(2, len(self.sizes) + 1), self.sizes[1:])
+        home[others[: len(places)]] = places
+        if not (self._must & (home == 0)).any():
+            self._improve(home, budget)
+
+    def near(self, groups: Iterable[Collection[int]], budget: Budget) -> None:
+        """Start from a family of groups of these sizes."""
+        home = np.zeros_like(self._home)
+        for g, group in enumerate(sorted(groups, key=len, reverse=True), start=1):
+            home[list(group)] = g
+        self._improve(home, budget)
+
+    def shake(self, rounds: int, budget: Budget) -> None:
+        """Exchange a few random robots of the best family and improve it again, so often; as far as time allows."""
+        for _ in range(rounds):
+            if budget.is_over:
+                return
+            home = self._home.copy()
+            for one, other in self._rng.integers(0, len(home), (STRENGTH, 2)).tolist():
+                if (home[one] and home[other]) or not (self._must[one] or self._must[other]):
+                    home[one], home[other] = home[other], home[one]
+            self._improve(home, budget)
+
+    def groups(self) -> tuple[frozenset[int], ...]:
+        """The best family found."""
+        return tuple(frozenset(np.flatnonzero(self._home == g).tolist()) for g in range(1, len(self.sizes) + 1))
+
+    def _improve(self, home: IntArray, budget: Budget) -> None:
+        n_robots, n_targets = self._team.information.shape[:2]
+        call = function(
+            "exchange_groups", c_int, POINTER(TeamRecord), c_int, *[c_void_p] * 2, c_double, c_int64, c_void_p
+        )
+        native, must = self._team.native(), np.ascontiguousarray(self._must, dtype=np.bool_)
+        home, value = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf)
+        steps, finished = max(4 * AT_ONCE // (n_robots**2 * n_targets), 1), 0
+        while not finished:
+            places = address(home), address(must)
+            finished = call(native.reference, len(self.sizes), *places, SHARE, steps, byref(value))
+            if finished < 0:
+                raise MemoryError
+            finished = finished or budget.is_over
+        if value.value < self.value:
+            self.value, self._home = value.value, home
