@@ -29,8 +29,8 @@ SIZES_SHARE = 0.7
 """Of what is left for groups of possible sizes on dense graphs: they close most of them, and dual prices hardly any."""
 
 FIRST_BOUND_SHARE, FIRST_BOUND_NODES = 0.05, 20_000
-"""The same at first, for the attack that comes with it: one of the starts of annealing is from there, which at a dense
-graph of 50 robots ends at the worst attack, and the others 10 % above."""
+"""The same at first on dense graphs, for the attack that comes with it: one of the starts of annealing is from there,
+which at 50 robots ends at the worst attack once, and the others 10 % above."""
 
 PRICES_SHARE = 0.5
 """Of what is left for dual prices before the forced size."""
@@ -64,7 +64,7 @@ CRITERION: tuple[Stage[Criterion], ...] = (
     Stage("forced size", Criterion.forced_size, Criterion.has_no_prices),
     Stage("annealed values", Criterion.annealed_values, Criterion.has_no_prices_and_a_limit, ANNEALED_SHARE),
     Stage("branch and bound", Criterion.tree_of_attacks, Criterion.has_no_prices_and_a_limit),
-    Stage("forced size", Criterion.forced_size, Criterion.has_prices, FIRST_BOUND_SHARE, FIRST_BOUND_NODES),
+    Stage("forced size", Criterion.forced_size, Criterion.may_have_sizes, FIRST_BOUND_SHARE, FIRST_BOUND_NODES),
     Stage("annealed attacks", Criterion.anneal, Criterion.has_prices),
     Stage("listed columns", Criterion.listed_columns, Criterion.may_list_columns_again, LISTED_SHARE, LISTED_NODES),
     Stage("possible sizes", Criterion.possible_sizes, Criterion.may_have_sizes, SIZES_SHARE),
