@@ -124,24 +124,6 @@ class ThresholdDecision:
                 break
         return Answer(verdict=Threshold.OPEN)
 
-    def refuting_prices(self, threshold: float, budget: Budget, nodes: int) -> DualPrices | None:
-        """Prices that refute the threshold without covers; ``None`` if there are none, or not after that many nodes.
-
-        Raises
-        ------
-        OutOfBudget : the time is up.
-        """
-        budget.check()
-        size, spent = self._plan.most_below(threshold), budget.nodes
-        self._attempt = max(self._attempt // LONGER, FIRST_ATTEMPT)
-        while (
-            budget.nodes - spent < nodes and self._settled(threshold, size, budget).links > self.threat.alpha_c + MARGIN
-        ):
-            answer = self._refute(threshold, size, budget)
-            if answer is not None:
-                return answer.prices if answer.verdict is Threshold.REFUTED else None
-        return None
-
     def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
         """Ask whether no group pays prices that claim more than the budget; ``None`` if more is to be done.
 

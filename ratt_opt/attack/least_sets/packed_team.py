@@ -69,11 +69,6 @@ class PackedTeam:
         return self.is_planar and self.objective.states("planar_levels")
 
     @property
-    def has_underestimators(self) -> bool:
-        """Whether sets of a size have sharp affine underestimators: in the plane, unless an axis decides."""
-        return self.is_planar and not self.is_by_axis
-
-    @property
     def traces(self) -> FloatArray:
         """(N, M) traces of the robots' information."""
         d = self.objective.dimension

@@ -22,13 +22,11 @@ if TYPE_CHECKING:
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
-__all__ = ["MOST_MASKED", "BoundedSets", "SetSearch"]
+__all__ = ["BoundedSets", "SetSearch"]
 
 FINISHED, FOUND = 0, 2
 AT_ONCE = 10_000_000
 """Values of single targets between two looks at the clock: some hundredths of a second."""
-MOST_MASKED = 63
-"""Robots of a team whose sets are listed: a set is one mask."""
 
 
 class SetQuestionRecord(Structure):

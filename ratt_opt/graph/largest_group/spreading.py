@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["TREES", "Tree", "TreeProgram", "forced_size", "forced_size_soon", "forced_size_trees", "forced_weight"]
+__all__ = ["TREES", "Tree", "TreeProgram", "forced_size", "forced_size_soon", "forced_weight"]
 
 TREES = "tree inequalities of a linear program, recomputed from their multipliers"
 
@@ -72,12 +72,6 @@ def forced_size_soon(threat: Threat, budget: Budget) -> int:
     return program.run(budget, n_robots, most_trees=SOON // links)
 
 
-def forced_size_trees(threat: Threat, budget: Budget) -> tuple[int, list[tuple[int, Tree]]]:
-    """The best :func:`forced_size`, and the trees and multipliers that prove it."""
-    program = _size_program(threat)
-    return program.run(budget, threat.graph.n_robots), program.combination
-
-
 def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int) -> int:
     """A weight that every attack leaves to the unblinded robots of some group; looks no further than ``enough``.
 
@@ -88,16 +82,11 @@ def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """An inequality: ``values`` of its links and robots (``columns``) off ``weight``, that of its robots.
-
-    ``steps`` : links (from, to), each from the root or a robot that an earlier one leads to
-    """
+    """An inequality: ``values`` of its links and robots (``columns``) off ``weight``, that of its robots."""
 
     columns: IntArray
     values: IntArray
     weight: int
-    root: int
-    steps: tuple[tuple[int, int], ...]
 
 
 class TreeProgram:
@@ -130,16 +119,13 @@ class TreeProgram:
         self.needed = float(self._needed(self.inside)[0].sum(axis=1).max())
         self.multipliers: FloatArray = np.zeros(0)
         self.best, self.is_done = 0, False
-        self.combination: list[tuple[int, Tree]] = []
 
     def run(self, budget: Budget, enough: int, most_trees: int = MOST_TREES) -> int:
         """Add trees until ``enough`` is proved or nothing more can be; the weight proved so far."""
         while not (self.is_done or self.best >= min(enough, self.reachable) or budget.stop() is not None):
             refined = self.refine(budget)
             self.is_done = not budget.is_over and (not refined or len(self.trees) > most_trees)
-            proved = self.proved
-            if proved > self.best:
-                self.best, self.combination = proved, self._combined()
+            self.best = max(self.best, self.proved)
         return self.best
 
     def _evenly(self) -> FloatArray:
@@ -191,17 +177,15 @@ class TreeProgram:
         within = np.where(kept > 0, self.weights, 0)
         behind, near = within.tolist(), np.flatnonzero(np.isfinite(distance))
         links: list[tuple[int, int]] = []
-        steps: list[tuple[int, int]] = []
         for robot in near[np.argsort(-distance[near], kind="stable")].tolist():
             if robot != root and behind[robot]:
                 last = before[robot]
                 links.append((self.place[robot, last], behind[robot]))
-                steps.append((int(last), robot))
                 behind[last] += behind[robot]
         columns, values = np.array(links, dtype=np.int64).reshape(-1, 2).T
         (robots,) = np.nonzero(within)
         everything = np.concatenate([columns, self.n_links + robots]), np.concatenate([values, within[robots]])
-        return Tree(*everything, int(within.sum()), root, tuple(reversed(steps)))
+        return Tree(*everything, int(within.sum()))
 
     @property
     def reachable(self) -> int:
@@ -211,7 +195,8 @@ class TreeProgram:
     @property
     def proved(self) -> int:
         """From the last multipliers, in integers: every attack leaves some group unblinded robots of this weight."""
-        used = self._combined()
+        weights = np.rint(np.maximum(self.multipliers, 0.0) * SCALE).astype(np.int64)
+        used = [(int(weights[k]), self.trees[k]) for k in np.flatnonzero(weights).tolist()]
         if not used:
             return 0
         total = np.zeros(self.n_links + self.n_robots, dtype=np.int64)
@@ -221,8 +206,3 @@ class TreeProgram:
         least = sum(weight * tree.weight for weight, tree in used)
         least -= sum(int(part[:b].sum()) for part, b in zip(hit, self.budgets, strict=True))
         return -(-least // sum(weight for weight, _ in used))
-
-    def _combined(self) -> list[tuple[int, Tree]]:
-        """The trees with their multipliers in integers, those of none left out."""
-        weights = np.rint(np.maximum(self.multipliers, 0.0) * SCALE).astype(np.int64)
-        return [(int(weights[k]), self.trees[k]) for k in np.flatnonzero(weights).tolist()]
