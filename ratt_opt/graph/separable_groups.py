@@ -8,33 +8,32 @@ so every attack is a choice of disjoint ones that cover the team.
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ratt_opt.budget import Budget
+from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
 from ratt_opt.graph.group_list import GroupList
 from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
+    from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["IMPOSSIBLE", "LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
+__all__ = ["LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
 
 LARGEST_MASK = 60
 """Most robots: a group is a bit mask of 64."""
-IMPOSSIBLE = 10_000
-"""Blinded robots that no budget holds."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeparableGroups:
-    """All separable groups of a threat.
+    """Separable groups of a threat, at first all.
 
     ``masks`` : (G,) groups by bit mask over *places*, sorted by lowest place; ``links`` : (G,) that separate each from
     the other robots; ``start`` : (N + 1,) first group of each lowest place; ``robots`` : (N,) robot at each place;
@@ -52,6 +51,11 @@ class SeparableGroups:
         """Robots of one group, ascending."""
         mask = int(self.masks[group])
         return np.sort(self.robots[[p for p in range(len(self.robots)) if mask >> p & 1]])
+
+    def among(self, kept: BoolArray) -> SeparableGroups:
+        """Some of them, ``kept`` (G,)."""
+        before = np.concatenate([[0], np.cumsum(kept)])
+        return replace(self, masks=self.masks[kept], links=self.links[kept], start=before[self.start])
 
     def by_robots(self) -> IntArray:
         """(G,) the groups by bit mask over robots instead of places."""
@@ -118,7 +122,7 @@ def _placed(masks: IntArray, links: IntArray, neighbours: IntArray) -> tuple[Int
     return moved[order], links[order], start, robots, near.astype(np.int64)
 
 
-LEVEL = np.dtype([("left", np.uint64), *((name, np.int64) for name in ("cut", "blinded", "next", "group"))])
+LEVEL = np.dtype([("left", np.uint64), *((name, np.int64) for name in ("cut", "next", "group"))])
 """``PartitionLevel`` of ``native/src/records.h``."""
 FOUND, NONE = 1, 0
 GROUPS_AT_ONCE = 1_000_000
@@ -129,33 +133,28 @@ class PartitionsRecord(Structure):
     """``Partitions`` of ``native/src/records.h``."""
 
     _fields_: ClassVar = [
-        *((name, c_int64) for name in ("n_blinded", "most_cut")),
-        *((name, c_void_p) for name in ("groups", "starts", "neighbours", "needs", "levels")),
+        ("most_cut", c_int64),
+        *((name, c_void_p) for name in ("groups", "starts", "neighbours", "levels")),
         *((name, c_int64) for name in ("depth", "nodes")),
     ]
 
 
 class PartitionSearch:
-    """All partitions of the team into separable groups within both budgets, one after the other; resumable.
-
-    ``need`` : (G,) robots to blind in each group, at least; may be raised between calls, never lowered
+    """All partitions of the team into separable groups within the budget of links, one after the other; resumable.
 
     Raises ``InputError`` : an array has another type or shape.
     """
 
-    def __init__(self, groups: SeparableGroups, need: IntArray) -> None:
-        self.need = need
+    def __init__(self, groups: SeparableGroups) -> None:
         count, n_robots = len(groups.masks), len(groups.robots)
         self._levels = np.zeros(n_robots + 1, LEVEL)
-        self._levels[0] = (1 << n_robots) - 1, 0, 0, 0, -1
+        self._levels[0] = (1 << n_robots) - 1, 0, 0, -1
         shapes = {"masks": count, "start": n_robots + 1, "neighbours": n_robots}
         arrays = [checked(name, getattr(groups, name), np.int64, (size,)) for name, size in shapes.items()]
-        arrays.append(checked("need", need, np.int64, (count,)))
+        if groups.start[-1] != count:
+            raise InputError("masks", f"must be the {groups.start[-1]} groups that have a place", count)
         self._kept = arrays
-        threat = groups.threat
-        self._record = PartitionsRecord(
-            threat.n_blinded, threat.alpha_c, *map(address, arrays), address(self._levels), 0, 0
-        )
+        self._record = PartitionsRecord(groups.threat.alpha_c, *map(address, arrays), address(self._levels), 0, 0)
         self.finished = False
 
     @property

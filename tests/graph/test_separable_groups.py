@@ -60,42 +60,29 @@ def test_a_listing_that_the_budget_ends_goes_on_the_next_time(seed, monkeypatch)
 
 @pytest.mark.parametrize("seed", range(60))
 @pytest.mark.parametrize("limit", [1, 10**6])
-def test_partitions_are_all_those_within_both_budgets(seed, limit, monkeypatch):
+def test_partitions_are_all_those_into_groups_of_the_list(seed, limit, monkeypatch):
     """Also when the search is paused after every node, or every group that it looks at."""
     monkeypatch.setattr(separable_groups_module, "GROUPS_AT_ONCE", [10**6, 1][seed % 2])
     rng = np.random.default_rng(seed)
     threat = random_problem(rng, 1 + seed % 7, kind="logdet", controls=1).threat
     groups = separable_groups(threat, 10_000)
-    need = rng.integers(0, 3, len(groups.masks))
-    search, found = PartitionSearch(groups, need.copy()), []
+    kept = rng.random(len(groups.masks)) < rng.choice([0.6, 0.9, 1.0])
+    few = groups.among(kept)
+    search, found = PartitionSearch(few), []
     while not search.finished:
         before = search.nodes
         chosen = search.next(limit)
         assert search.nodes <= before + limit
         if chosen is not None:
-            found.append(frozenset(tuple(groups.members(k).tolist()) for k in chosen))
-    needs = {tuple(groups.members(k).tolist()): int(need[k]) for k in range(len(need))}
+            found.append(frozenset(tuple(few.members(k).tolist()) for k in chosen))
+    listed = {tuple(groups.members(k).tolist()) for k in np.flatnonzero(kept).tolist()}
     expected = set()
     for partition in connected_partitions(threat):
         parts = frozenset(tuple(i for i in range(threat.graph.n_robots) if mask >> i & 1) for mask in partition)
-        if sum(needs[part] for part in parts) <= threat.n_blinded:
+        if parts <= listed:
             expected.add(parts)
     assert len(found) == len(set(found))
     assert set(found) == expected
-
-
-def test_needs_that_rise_on_the_way_only_shorten_the_search():
-    threat = Threat(CommunicationGraph.from_networkx(nx.cycle_graph(7), 7), 2, 4)
-    groups = separable_groups(threat, 10_000)
-    need = np.zeros(len(groups.masks), dtype=np.int64)
-    search, seen = PartitionSearch(groups, need), []
-    while not search.finished:
-        chosen = search.next(10**6)
-        if chosen is not None:
-            assert need[chosen].sum() <= 2
-            seen.append(chosen)
-            need[chosen[0]] += 1
-    assert 1 < len(seen) < len(list(connected_partitions(threat)))
 
 
 def test_too_many_robots_for_a_mask():
@@ -104,24 +91,21 @@ def test_too_many_robots_for_a_mask():
 
 def test_a_partition_of_one_robot():
     groups = separable_groups(Threat(CommunicationGraph(1, frozenset()), 1, 0), 10)
-    search = PartitionSearch(groups, np.zeros(1, dtype=np.int64))
+    search = PartitionSearch(groups)
     assert search.next(10) == [0]
     assert search.next(10) is None
     assert search.finished
-    search = PartitionSearch(groups, np.full(1, 2))
+    search = PartitionSearch(groups.among(np.zeros(1, dtype=np.bool_)))
     assert search.next(10) is None
     assert (search.finished, search.nodes) == (True, 0)
 
 
 def test_what_c_may_not_read_is_refused():
     groups = separable_groups(Threat(CommunicationGraph.from_networkx(nx.cycle_graph(5), 5), 1, 2), 100)
-    need = np.zeros(len(groups.masks), dtype=np.int64)
-    PartitionSearch(groups, need)
-    for bad in (need.astype(np.int32), need.tolist(), need[1:], np.repeat(need, 2)[::2], need[:, None]):
-        with pytest.raises(InputError):
-            PartitionSearch(groups, bad)
+    PartitionSearch(groups)
     for name in ("masks", "start", "neighbours"):
         array = getattr(groups, name)
-        for bad in (array.astype(np.int32), array[:-1].copy(), np.repeat(array, 2)[::2]):
+        strided = np.repeat(array, 2)[::2]
+        for bad in (array.astype(np.int32), array.tolist(), array[:-1].copy(), strided, array[:, None]):
             with pytest.raises(InputError):
-                PartitionSearch(replace(groups, **{name: bad}), need)
+                PartitionSearch(replace(groups, **{name: bad}))

@@ -33,7 +33,7 @@ from ratt_opt.graph.largest_group.counting import (
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.largest_group.integer_program import by_integer_program
 from ratt_opt.graph.largest_group.spreading import TREES, forced_size, forced_size_soon
-from ratt_opt.graph.separable_groups import IMPOSSIBLE, PartitionSearch, separable_groups
+from ratt_opt.graph.separable_groups import PartitionSearch, separable_groups
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.running.progress import Step
@@ -223,10 +223,11 @@ def by_separable_groups(threat: Threat, budget: Budget, known: LargestGroup | No
     known = known or by_counting(threat, budget)
     lower, reason, cut = known.lower, known.reason, known.cut
     while lower < largest_left(threat.graph, cut):
-        search = PartitionSearch(groups, np.where(sizes <= lower, 0, IMPOSSIBLE))
+        few = groups.among(sizes <= lower)
+        search = PartitionSearch(few)
         chosen = _first_partition(search, budget)
         if chosen is not None:
-            cut = threat.graph.links_between(groups.members(group).tolist() for group in chosen)
+            cut = threat.graph.links_between(few.members(group).tolist() for group in chosen)
         if chosen is not None or not search.finished:
             break
         lower += 1

@@ -11,24 +11,14 @@ static int64_t links_between(const Partitions *p, uint64_t group, uint64_t other
     return links;
 }
 
-/* Go back to where the groups chosen, which may need more than they did, are within the budget. */
-static void settle(Partitions *p) {
-    for (int64_t d = 0; d < p->depth; d++) {
-        p->levels[d + 1].blinded = p->levels[d].blinded + p->needs[p->levels[d].group];
-        if (p->levels[d + 1].blinded > p->n_blinded) p->depth = d;
-    }
-}
-
 /* Go on to the next partition, its groups in levels[0..depth]; PAUSED after `nodes` nodes or `steps` groups looked at. Each
    group has the lowest robot that is in none so far. */
 EXPORTED int next_partition_into_groups(Partitions *p, int64_t nodes, int64_t steps) {
     int64_t limit = p->nodes + nodes;
-    settle(p);
     while (p->depth >= 0) {
         PartitionLevel *level = p->levels + p->depth, *below = level + 1;
         int64_t end = p->starts[lowest(level->left) + 1], group = level->next;
-        while (group < end && steps > 0 && (p->groups[group] & ~level->left || level->blinded + p->needs[group] > p->n_blinded))
-            group++, steps--;
+        while (group < end && steps > 0 && p->groups[group] & ~level->left) group++, steps--;
         level->next = group;
         if (group == end) {
             p->depth--;
@@ -41,7 +31,7 @@ EXPORTED int next_partition_into_groups(Partitions *p, int64_t nodes, int64_t st
         if (cut > p->most_cut) continue;
         level->group = group;
         if (!left) return FOUND;
-        *below = (PartitionLevel){left, cut, level->blinded + p->needs[group], p->starts[lowest(left)], -1};
+        *below = (PartitionLevel){left, cut, p->starts[lowest(left)], -1};
         p->depth++;
     }
     return NONE;

@@ -15,17 +15,16 @@ typedef struct {
 /* A level of the search of partitions. */
 typedef struct {
     uint64_t left;                    /* robots in no group so far */
-    int64_t cut, blinded;             /* by the groups so far */
+    int64_t cut;                      /* by the groups so far */
     int64_t next, group;              /* the group tried next, and the one that is chosen */
 } PartitionLevel;
 
-/* Partitions of the team into listed groups, within both budgets. */
+/* Partitions of the team into listed groups, within the budget of links. */
 typedef struct {
-    int64_t n_blinded, most_cut;
+    int64_t most_cut;
     const uint64_t *groups;           /* sorted by lowest robot */
     const int64_t *starts;            /* (robots + 1) the first group of each lowest robot */
     const uint64_t *neighbours;       /* (robots) */
-    const int64_t *needs;             /* (groups) robots to blind, at least; may be raised between two calls */
     PartitionLevel *levels;           /* (robots + 1) */
     int64_t depth, nodes;             /* depth: -1 at the end; nodes: groups tried */
 } Partitions;
