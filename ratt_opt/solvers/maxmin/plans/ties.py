@@ -48,30 +48,21 @@ def break_ties(incumbent: Incumbent, budget: Budget) -> None:
 def _richer(incumbent: Incumbent, plan: IntArray, budget: Budget) -> IntArray:
     """A plan of no smaller value under the known outcomes that no exchange makes worth more without attack."""
     problem, pool = incumbent.problem, incumbent.pool
-    unattacked = OutcomePool(problem)
+    rounding, unattacked = problem.objective.rounding, OutcomePool(problem)
     unattacked.add(Attack())
     least = min(incumbent.proved.lower, pool.plan_value(plan))
-    least -= PROVED * abs(least) + problem.objective.rounding
-    current, robot, unchanged = plan.copy(), 0, 0
-    while unchanged < problem.n_robots and not budget.is_over:
-        unchanged += 1
-        for e in _richer_elements(unattacked, current, robot):
-            other = current.copy()
-            other[robot] = e
-            if pool.plan_value(other) >= least:
-                current, unchanged = other, 0
-                break
-        robot = (robot + 1) % problem.n_robots
+    least -= PROVED * abs(least) + rounding
+    best, current = unattacked.plan_value(plan), plan.copy()
+    improved = True
+    while improved:
+        improved = False
+        for i, choice in enumerate(problem.choices):
+            for e in choice.tolist():
+                if budget.is_over:
+                    return current
+                other = current.copy()
+                other[i] = e
+                value = unattacked.plan_value(other)
+                if value > best + NO_MORE * abs(best) + rounding and pool.plan_value(other) >= least:
+                    best, current, improved = value, other, True
     return current
-
-
-def _richer_elements(unattacked: OutcomePool, plan: IntArray, robot: int) -> list[int]:
-    """Elements of a robot with which a plan is worth more when nobody attacks, those of most worth first."""
-    objective, choice = unattacked.objective, unattacked.problem.choices[robot]
-    change = objective.information[choice] - objective.information[plan[robot]]
-    inside = unattacked.membership()[:, robot, None, None, None]
-    points = unattacked.group_points(objective.information[plan]) + inside * change[:, None]
-    worth = unattacked.outcome_values(objective.value(points))[:, 0]
-    now = float(worth[choice == plan[robot]][0])
-    better = np.flatnonzero(worth > now + NO_MORE * abs(now) + objective.rounding)
-    return [int(e) for e in choice[better[np.argsort(-worth[better], kind="stable")]]]
