@@ -147,16 +147,15 @@ class CriterionAttack(TeamAttack):
 
     def listed_columns(self) -> None:
         """All groups that an attack may leave, if they are soon listed, and whether one leaves less than in hand."""
+        assert self._prices is not None
+        assert self._team is not None
         if self._listed is None:
             most, part = FEW_LISTED if self._is_brief else MOST_LISTED, self.task.budget.part(LISTING_SHARE)
             listed = separable_groups(self._threat, most, part)
             if listed is None:
                 return
-            assert self._prices is not None
-            assert self._team is not None
             self._listed = ListedSearch(self.task, self._prices.plan, self._team, listed)
         if not self._is_annealed:
-            assert self._prices is not None
             self._prices.task = self.task
             self._prices.anneal(LISTED_STARTS)
         self._listed.task = self.task

@@ -31,7 +31,7 @@ class Backjumps:
         self.frontier, self.cuts = frontier, cuts
 
     def follow(self) -> None:
-        """Take back divisions above the leaves that were closed since the last time; no node may be in work or lent."""
+        """Take back divisions above the leaves that were closed since the last time; no node may be in work."""
         while self.frontier.fresh:
             leaf = self.frontier.fresh.pop()
             if not leaf.is_dropped:
