@@ -89,6 +89,10 @@ class ListedColumns:
         self._strongest = [int(i) for i in np.argsort(-plan.single, kind="stable")]
         self._sets: list[tuple[int, int]] = []
         """Masks, and how many of their robots may sense."""
+        self._below: list[int] = []
+        """Masks of sets worth less than the threshold."""
+        self._asked: tuple[int, int, LeastSetSearch] | None = None
+        """The question in hand: of which set and size, and its search."""
         self._covers: tuple[IntArray, ExactCover] | None = None
         """Masks of columns within the gap, and the search of covers by them, if it is begun."""
 
@@ -140,7 +144,7 @@ class ListedColumns:
         for size in range(self.robots - 1, 0, -1):
             budget.check()
             mask, before = sum(1 << i for i in self._strongest[:size]), min(room, size)
-            room = self._room(mask, before)
+            room = self._room(mask, before, budget)
             if room < before:
                 self._learn(mask, room)
         self._keep_possible()
@@ -152,28 +156,40 @@ class ListedColumns:
             budget.check()
             size = mask.bit_count()
             known = max((mask & one).bit_count() - room for one, room in self._sets)
-            room = self._room(mask, size - max(known, 0))
+            room = self._room(mask, size - max(known, 0), budget)
             if room < size - max(known, 0):
                 self._learn(self._enlarged(mask, room, budget), room)
         self._keep_possible()
         return len(self._sets) > before
 
-    def _room(self, mask: int, most: int) -> int:
+    def _room(self, mask: int, most: int, budget: Budget) -> int:
         """How many robots of a set may sense, at most ``most``."""
-        while most > 0 and not self._may_sense(mask, most):
+        while most > 0 and not self._may_sense(mask, most, budget):
             most -= 1
         return most
 
     def _enlarged(self, mask: int, room: int, budget: Budget) -> int:
         for i in self._strongest:
             budget.check()
-            if not mask >> i & 1 and not self._may_sense(mask | 1 << i, room + 1):
+            if not mask >> i & 1 and not self._may_sense(mask | 1 << i, room + 1, budget):
                 mask |= 1 << i
         return mask
 
-    def _may_sense(self, mask: int, size: int) -> bool:
-        inside = np.array([mask >> i & 1 for i in range(self.robots)], dtype=np.bool_)
-        return self._plan.some_may_be_below(inside, size, self.threshold)
+    def _may_sense(self, mask: int, size: int, budget: Budget) -> bool:
+        """Whether ``size`` robots of a set are worth less than the threshold together."""
+        if any((mask & below).bit_count() >= size for below in self._below):
+            return True
+        if any((mask & one).bit_count() - room > mask.bit_count() - size for one, room in self._sets):
+            return False
+        if self._asked is None or self._asked[:2] != (mask, size):
+            outside = frozenset(i for i in range(self.robots) if not mask >> i & 1)
+            self._asked = mask, size, LeastSetSearch(self._team, size, self.threshold, outside=outside)
+        search = self._asked[2].run(budget)
+        found = next((one for one in search if one is not None), None)
+        self._asked = None
+        if found is not None:
+            self._below.append(sum(1 << i for i in found))
+        return found is not None
 
     def _learn(self, mask: int, room: int) -> None:
         self._sets.append((mask, room))
@@ -214,7 +230,10 @@ class ListedColumns:
             search = LeastSetSearch(self._team, size, self.threshold, inside=fixed, outside=outside)
             seeing = next((one for one in search.run(budget) if one is not None), None)
             if seeing is None:
-                self._learn(mask, size - 1)
+                if fixed:  # other groups have other protected robots
+                    self.blinded[self.groups == mask] += 1
+                else:
+                    self._learn(mask, size - 1)
                 self._keep_possible()
                 return None
             blind[list(inside - seeing)] = True
