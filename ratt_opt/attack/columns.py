@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
+from ctypes import POINTER, Structure, byref, c_int, c_int64, c_uint64, c_void_p
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ratt_opt.graph.group_list import GroupList
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,26 +20,35 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["UNIT", "Columns", "Duals", "groups_of"]
+__all__ = ["MOST_CUT", "UNIT", "Column", "Columns", "ColumnsRecord", "Duals", "DualsRecord", "groups_of"]
+
+
+MOST_CUT = 255
+"""Links that leave a group, at most: a byte."""
+NARROW = 32
+"""Robots up to which a group's bit mask has 32 bits."""
 
 
 def groups_of(threat: Threat) -> GroupList:
-    """The list of a threat's groups, of at most 32 robots; the last few graphs' are kept."""
+    """The list of a threat's groups, for at most ``MOST_CUT`` links to cut; the last few graphs' are kept."""
     return _kept(threat.graph, threat.alpha_c, threat.protected_links)
 
 
 @lru_cache(maxsize=2)
 def _kept(graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> GroupList:
-    return GroupList(graph, most_cut, protected_links, (np.uint32, np.uint8))
+    return GroupList(graph, most_cut, protected_links, (np.uint32 if graph.n_robots <= NARROW else np.int64, np.uint8))
 
 
 UNIT = 1 << 20
 """Of integer duals, one link: with them reduced costs are exact."""
-HALF = 12
+PART = 12
+"""Robots of a table of sums of duals."""
 
 
-class _DualsRecord(Structure):
-    _fields_: ClassVar = [("low", c_void_p), ("high", c_void_p), ("unit", c_int64), ("blinding", c_int64)]
+class DualsRecord(Structure):
+    """``Duals`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [("sums", c_void_p), ("unit", c_int64), ("blinding", c_int64)]
 
 
 class Duals:
@@ -52,13 +61,16 @@ class Duals:
         self.robots, self.blinding = robots, blinding
 
     @cached_property
-    def _sums(self) -> tuple[IntArray, IntArray]:
-        return _sums_of_sets(self.robots[:HALF]), _sums_of_sets(self.robots[HALF:])
+    def _sums(self) -> IntArray:
+        parts = -(-len(self.robots) // PART)
+        padded = np.zeros((parts, PART), np.int64)
+        padded.flat[: len(self.robots)] = self.robots
+        return np.ascontiguousarray([_sums_of_sets(part) for part in padded])
 
     @property
-    def record(self) -> _DualsRecord:
-        """As C reads it, for teams of up to 32 robots."""
-        return _DualsRecord(*map(address, self._sums), UNIT, self.blinding)
+    def record(self) -> DualsRecord:
+        """As C reads it."""
+        return DualsRecord(address(self._sums), UNIT, self.blinding)
 
     def claim(self, n_blinded: int) -> int:
         """What groups that cover the team cost at least, if no column has a negative reduced cost."""
@@ -72,14 +84,36 @@ def _sums_of_sets(values: IntArray) -> IntArray:
     return sums
 
 
-@dataclass(frozen=True, slots=True)
-class Columns:
-    """``groups`` : (C,) bit masks; ``cuts``, ``blinded`` : (C,) links that leave each, and robots to blind in it."""
+class ColumnsRecord(Structure):
+    """``Columns`` of ``native/src/records.h``."""
 
-    robots: int
-    groups: NDArray[np.uint32]
-    cuts: NDArray[np.uint8]
-    blinded: NDArray[np.uint8]
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("count", "wide")),
+        *((name, c_void_p) for name in ("groups", "cuts", "blinded")),
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A group by bit mask, the links that leave it, and the robots to blind in it."""
+
+    group: int
+    cut: int
+    blinded: int
+
+
+class Columns:
+    """``groups`` : (C,) bit masks; ``cuts``, ``blinded`` : (C,) links that leave each, and robots to blind in it.
+
+    Raises ``InputError`` : an array has another type or shape.
+    """
+
+    def __init__(self, robots: int, groups: NDArray[Any], cuts: NDArray[np.uint8], blinded: NDArray[np.uint8]) -> None:
+        self.robots, self.groups, self.cuts, self.blinded = robots, groups, cuts, blinded
+        kind = np.uint32 if robots <= NARROW else np.int64
+        arrays = [checked("groups", groups, kind, (len(groups),))]
+        arrays += [checked(name, getattr(self, name), np.uint8, (len(groups),)) for name in ("cuts", "blinded")]
+        self._record = ColumnsRecord(len(groups), robots > NARROW, *map(address, arrays))
 
     @classmethod
     def of(cls, groups: NDArray[np.uint32], cuts: NDArray[np.uint8], below: SetsBelow, n_blinded: int) -> Columns:
@@ -93,28 +127,37 @@ class Columns:
     def __len__(self) -> int:
         return len(self.groups)
 
+    def some(self, places: IntArray | list[int]) -> list[Column]:
+        """Those at some places."""
+        arrays = self.groups[places], self.cuts[places], self.blinded[places]
+        return [Column(*of_one) for of_one in zip(*(array.tolist() for array in arrays), strict=True)]
+
     def cheapest(self, duals: Duals) -> tuple[int, IntArray]:
         """The least reduced cost, and the columns, of one robot each, that have the least and a negative one."""
-        call = function("price", c_int64, c_int, c_int64, *[c_void_p] * 3, POINTER(_DualsRecord), c_void_p)
+        call = function("price", c_int64, c_int, POINTER(ColumnsRecord), POINTER(DualsRecord), c_void_p)
         cheapest = np.empty(self.robots, np.int64)
-        least = call(self.robots, len(self), *self._addresses, byref(duals.record), address(cheapest))
+        least = call(self.robots, byref(self._record), byref(duals.record), address(cheapest))
         return (int(least) if len(self) else 0), np.unique(cheapest[cheapest >= 0])
 
     def within(self, duals: Duals, gap: int, most: int) -> tuple[Columns, IntArray] | None:
         """The columns of reduced cost at most ``gap``, by reduced cost, and these; ``None`` : more than ``most``."""
-        call = function(
-            "within_gap", c_int64, c_int64, *[c_void_p] * 3, POINTER(_DualsRecord), *[c_int64] * 2, *[c_void_p] * 2
-        )
+        given = POINTER(ColumnsRecord), POINTER(DualsRecord), *[c_int64] * 2, *[c_void_p] * 2
         room = min(most, len(self))
         columns, costs = np.empty(room, np.int64), np.empty(room, np.int64)
-        given = len(self), *self._addresses, byref(duals.record), gap, room
-        count = call(*given, address(columns), address(costs))
+        places = address(columns), address(costs)
+        count = function("within_gap", c_int64, *given)(byref(self._record), byref(duals.record), gap, room, *places)
         if count > room:
             return None
         order = np.argsort(costs[:count], kind="stable")
         kept = columns[:count][order]
         return Columns(self.robots, self.groups[kept], self.cuts[kept], self.blinded[kept]), costs[:count][order]
 
-    @property
-    def _addresses(self) -> tuple[int, int, int]:
-        return address(self.groups), address(self.cuts), address(self.blinded)
+    def restrict(self, robots: int, most: int, threat: Threat) -> None:
+        """Know that at most ``most`` of some robots (bit mask) sense in groups that have the protected ones of these.
+
+        Drops groups with too many robots to blind, in place.
+        """
+        call = function("restrict_columns", c_int64, POINTER(ColumnsRecord), c_uint64, c_int, c_uint64, c_int)
+        protected = sum(1 << i for i in threat.protected_robots)
+        count = call(byref(self._record), robots, most, protected, threat.n_blinded)
+        self.groups, self.cuts, self.blinded = self.groups[:count], self.cuts[:count], self.blinded[:count]

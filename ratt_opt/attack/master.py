@@ -10,8 +10,9 @@ costs at least ``u(C) - m blinded(C)`` plus the least reduced cost of all column
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,38 +21,37 @@ from ratt_opt.graph.communication import robots_of
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Iterable, Sequence
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.attack.columns import Column, Columns
     from ratt_opt.budget import Budget
+    from ratt_opt.highs import Rows
 
-__all__ = ["best_duals"]
+__all__ = ["DualBound", "best_duals"]
 
 USED = 1e-7
 """Part of a column in a solution that is more than the program's tolerance."""
 
 
-class ColumnList(Protocol):
-    """Columns of a team: ``groups`` (C,) bit masks, ``cuts``, ``blinded`` (C,)."""
+@dataclass(frozen=True, slots=True)
+class DualBound:
+    """``duals`` : under which no column has a negative reduced cost; ``columns`` : of the program.
 
-    @property
-    def robots(self) -> int: ...
-    @property
-    def groups(self) -> NDArray[Any]: ...
-    @property
-    def cuts(self) -> NDArray[Any]: ...
-    @property
-    def blinded(self) -> NDArray[Any]: ...
+    ``used`` : columns of which the last solution takes a part
+    """
 
-    def cheapest(self, duals: Duals) -> tuple[int, IntArray]:
-        """The least reduced cost, and some columns of negative one."""
-        ...
+    duals: Duals
+    columns: list[Column]
+    used: list[Column]
 
 
-def best_duals(columns: ColumnList, n_blinded: int, most_cut: int, budget: Budget) -> tuple[Duals, IntArray]:
-    """Duals under which no column has a negative reduced cost; the best, or some that claim more than ``most_cut``.
+def best_duals(
+    columns: Columns, n_blinded: int, most_cut: int, budget: Budget, first: Iterable[Column] = ()
+) -> DualBound:
+    """The best duals under which no column has a negative reduced cost, or some that claim more than ``most_cut``.
 
-    Also the columns of which the last solution takes a part.
+    ``first`` : columns that the program begins with
 
     Raises
     ------
@@ -60,7 +60,8 @@ def best_duals(columns: ColumnList, n_blinded: int, most_cut: int, budget: Budge
     n, largest = columns.robots, 4.0 * (most_cut + columns.robots**2)
     lower = np.append(np.full(n, -largest), 0.0)
     program = LinearProgram(np.append(np.ones(n), -float(n_blinded)), lower, largest, maximise=True)
-    best, known, parts = Duals(np.zeros(n, np.int64), 0), dict[int, None](), np.zeros(0)
+    best, known, parts = Duals(np.zeros(n, np.int64), 0), dict.fromkeys(first), np.zeros(0)
+    program.add_rows(_rows(list(known), n))
     while best.claim(n_blinded) <= most_cut * UNIT:
         budget.check()
         claimed = program.solve()
@@ -72,13 +73,13 @@ def best_duals(columns: ColumnList, n_blinded: int, most_cut: int, budget: Budge
             duals = Duals(duals.robots + least, duals.blinding)
         if duals.claim(n_blinded) > best.claim(n_blinded):
             best = duals
-        fresh = [int(k) for k in cheapest if int(k) not in known]
+        fresh = [one for one in columns.some(cheapest) if one not in known]
         if not fresh:
             break
         known.update(dict.fromkeys(fresh))
-        program.add_rows(rows_of(*_rows(columns, np.array(fresh))))
-    entered = np.fromiter(known, np.int64)[: len(parts)]
-    return best, entered[parts[: len(entered)] > USED]
+        program.add_rows(_rows(fresh, n))
+    entered = list(known)
+    return DualBound(best, entered, [entered[k] for k in np.flatnonzero(parts > USED)])
 
 
 def _rounded(claimed: FloatArray, n: int) -> Duals | None:
@@ -87,9 +88,9 @@ def _rounded(claimed: FloatArray, n: int) -> Duals | None:
     return Duals(np.floor(claimed[:n] * UNIT).astype(np.int64), max(int(np.ceil(claimed[n] * UNIT)), 0))
 
 
-def _rows(columns: ColumnList, chosen: IntArray) -> tuple[list[tuple[list[int], list[float]]], float, FloatArray]:
+def _rows(columns: Sequence[Column], robots: int) -> Rows:
     entries = []
-    for mask, blinded in zip(columns.groups[chosen].tolist(), columns.blinded[chosen].tolist(), strict=True):
-        members = robots_of(mask)
-        entries.append(([*members, columns.robots], [*[1.0] * len(members), -float(blinded)]))
-    return entries, -inf, columns.cuts[chosen].astype(np.float64)
+    for column in columns:
+        members = robots_of(column.group)
+        entries.append(([*members, robots], [*[1.0] * len(members), -float(column.blinded)]))
+    return rows_of(entries, -inf, np.array([column.cut for column in columns], dtype=np.float64))

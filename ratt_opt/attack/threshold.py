@@ -59,7 +59,7 @@ def decide(
     level, following = below.mark(threshold, budget)
     columns = Columns.of(groups, cuts, below, threat.n_blinded)
     most_cut = 2 * threat.alpha_c
-    duals, _ = best_duals(columns, threat.n_blinded, most_cut, budget)
+    duals = best_duals(columns, threat.n_blinded, most_cut, budget).duals
     gap = most_cut * UNIT - duals.claim(threat.n_blinded)
     if gap < 0:
         return Answer(is_reachable=False, level=level, following=following)

@@ -7,6 +7,7 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bound
+from ratt_opt.attack.columns import MOST_CUT, groups_of
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.listed_columns import FEW_LISTED, ListedSearch
@@ -17,7 +18,7 @@ from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.graph.separable_groups import LARGEST_MASK, separable_groups
+from ratt_opt.graph.separable_groups import LARGEST_MASK
 
 if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask
@@ -25,9 +26,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CriterionAttack"]
 
-MOST_LISTED, LISTING_SHARE = 300_000, 0.1
-"""Groups that an attack may leave for columns to be listed; share of the seconds left for the list. It takes a second
-on sparse graphs of 50 robots, four on dense ones."""
+MOST_LISTED, LISTING_SHARE = 3_000_000, 0.1
+"""Groups that an attack may leave for columns to be listed, which take ten bytes each, twice; share of the seconds left
+for the list. A million take a tenth of a second on sparse graphs, and many more on dense ones of 50 robots."""
 
 LISTED_STARTS = 4
 """Annealed attacks before the first listed columns."""
@@ -85,8 +86,9 @@ class CriterionAttack(TeamAttack):
         return self._team is not None and self.task.problem.communication.is_complete
 
     def may_list_columns(self) -> bool:
-        """Criterion compiled, at most 60 robots, graph not dense."""
-        return self._prices is not None and not self._is_dense and self.task.problem.n_robots <= LARGEST_MASK
+        """Criterion compiled, at most 60 robots and 255 links to cut."""
+        is_narrow = self.task.problem.n_robots <= LARGEST_MASK and self._threat.alpha_c <= MOST_CUT
+        return self._prices is not None and is_narrow
 
     def may_list_columns_again(self) -> bool:
         """The same, limit of time."""
@@ -151,10 +153,10 @@ class CriterionAttack(TeamAttack):
         assert self._team is not None
         if self._listed is None:
             most, part = FEW_LISTED if self._is_brief else MOST_LISTED, self.task.budget.part(LISTING_SHARE)
-            listed = separable_groups(self._threat, most, part)
-            if listed is None:
+            groups = groups_of(self._threat)
+            if not groups.has_listed(most, part):
                 return
-            self._listed = ListedSearch(self.task, self._prices.plan, self._team, listed)
+            self._listed = ListedSearch(self.task, self._team, groups)
         if not self._is_annealed:
             self._prices.task = self.task
             self._prices.anneal(LISTED_STARTS)

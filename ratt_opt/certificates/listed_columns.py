@@ -43,7 +43,7 @@ def duals_of_all_groups(plan: Plan, threshold: float) -> tuple[FloatArray, float
         if columns is None:
             return None
         n_blinded, most_cut = plan.threat.n_blinded, 2 * plan.threat.alpha_c
-        found, _ = best_duals(columns, n_blinded, 2 * len(plan.threat.graph.links) + plan.robots, budget)
+        found = best_duals(columns, n_blinded, 2 * len(plan.threat.graph.links) + plan.robots, budget).duals
     except OutOfBudget:
         return None
     robots, blinded = found.robots / UNIT, found.blinding / UNIT

@@ -73,6 +73,12 @@ class GroupList:
         self._parts.append((groups[:found].astype(self._kinds[0]), cuts[:found].astype(self._kinds[1])))
         self._count += found
 
+    def has_listed(self, most: int, budget: Budget) -> bool:
+        """List on, until all are listed, they are more than ``most``, or the budget is spent; whether all are."""
+        while not self.is_complete and len(self) <= most and not budget.is_over:
+            self.go_on()
+        return self.is_complete and len(self) <= most
+
     def all(self, budget: Budget) -> tuple[NDArray[Any], NDArray[Any]]:
         """Bit masks (G,) of all groups, and links that leave each (G,).
 

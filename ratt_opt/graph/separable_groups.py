@@ -73,10 +73,7 @@ def separable_groups(threat: Threat, most: int, budget: Budget | None = None) ->
     if threat.graph.n_robots > LARGEST_MASK:
         return None
     listing = _listing(threat.graph, threat.alpha_c, threat.protected_links)
-    most, budget = min(most, LONGEST_LIST), budget or Budget()
-    while not listing.groups.is_complete and len(listing.groups) <= most and not budget.is_over:
-        listing.groups.go_on()
-    if not listing.groups.is_complete or len(listing.groups) > most:
+    if not listing.groups.has_listed(min(most, LONGEST_LIST), budget or Budget()):
         return None
     return SeparableGroups(threat, *listing.placed())
 

@@ -26,7 +26,6 @@ def run_listed(problem, plan, max_nodes=None):
 @pytest.mark.parametrize("seed", range(60))
 def test_against_the_definition(seed, few, monkeypatch):
     monkeypatch.setattr(listed_columns, "FEW_LISTED", few)
-    monkeypatch.setattr(listed_columns, "ADDED", 1 + seed % 5)
     problem, plan = team_problem(seed, 3 + seed % 4)
     bracket, _, stop = run_listed(problem, plan)
     assert stop is ro.Stop.CLOSED

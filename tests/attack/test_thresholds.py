@@ -12,7 +12,7 @@ import ratt_opt as ro
 from ratt_opt.attack import columns as columns_module
 from ratt_opt.attack import exact_cover, sets_below
 from ratt_opt.attack.annealing import AnnealRecord
-from ratt_opt.attack.columns import UNIT, Columns, Duals
+from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, Duals, DualsRecord
 from ratt_opt.attack.exact_cover import CoverRecord, ExactCover
 from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
 from ratt_opt.attack.master import best_duals
@@ -166,7 +166,7 @@ def test_duals_and_covers_against_all_covers(seed):
                 yield from covers(left ^ mask, blinded - int(columns.blinded[k]), cut + int(columns.cuts[k]))
 
     costs = list(covers(2**robots - 1, n_blinded, 0))
-    duals, _ = best_duals(columns, n_blinded, most_cut, Budget())
+    duals = best_duals(columns, n_blinded, most_cut, Budget()).duals
     reduced = [
         UNIT * int(cut) + duals.blinding * int(blind) - sum(int(duals.robots[i]) for i in members(int(mask)))
         for mask, cut, blind in zip(columns.groups, columns.cuts, columns.blinded, strict=True)
@@ -243,12 +243,13 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(15, np.int64)
+    sizes = np.zeros(17, np.int64)
     layout(sizes.ctypes.data)
     records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord, CoverRecord)]
     first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
     of_graphs = LEVEL.itemsize, ctypes.sizeof(PartitionsRecord), ctypes.sizeof(CutAnnealRecord)
-    assert sizes.tolist() == [*first, *records, *of_graphs, ctypes.sizeof(GreedyRecord), ctypes.sizeof(DescentRecord)]
+    others = [ctypes.sizeof(record) for record in (GreedyRecord, DescentRecord, ColumnsRecord, DualsRecord)]
+    assert sizes.tolist() == [*first, *records, *of_graphs, *others]
 
 
 def test_the_example_of_the_page_of_the_engine():

@@ -14,6 +14,7 @@ import numpy as np
 import ratt_opt as ro
 from ratt_opt.attack import all_sets, listed_columns
 from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.columns import groups_of
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search as set_search
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
@@ -39,7 +40,6 @@ from ratt_opt.attackers.any_function import annealed_attacks, exchange_attack
 from ratt_opt.attackers.attack_tree import try_every_attack
 from ratt_opt.attackers.link_choice import best_links
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.graph.separable_groups import separable_groups
 from ratt_opt.setfunctions.metered import Metered
 
 if TYPE_CHECKING:
@@ -92,8 +92,9 @@ def _priced(task: AttackTask) -> ThresholdSearch:
 
 
 def _by_list(task: AttackTask) -> ListedSearch:
-    plan = Plan.of(task.problem.objective, task.values.plan, task.problem.threat)
-    return ListedSearch(task, plan, _packed(task), separable_groups(task.problem.threat, 100_000))
+    groups = groups_of(task.problem.threat)
+    assert groups.has_listed(100_000, Budget())
+    return ListedSearch(task, _packed(task), groups)
 
 
 def _annealed_then_priced(task: AttackTask) -> Stop:

@@ -58,24 +58,27 @@ EXPORTED int64_t keep_reachable(const uint8_t *sizes, int64_t count, const uint3
     return n;
 }
 
-enum { HALF = 12 };
+static inline uint64_t group_at(const Columns *c, int64_t k) {
+    return c->wide ? ((const uint64_t *)c->groups)[k] : ((const uint32_t *)c->groups)[k];
+}
 
-static inline int64_t reduced_cost(const Duals *duals, uint32_t group, uint8_t cut, uint8_t blinded) {
-    return cut * duals->unit + blinded * duals->blinding - duals->low[group & ((1 << HALF) - 1)] - duals->high[group >> HALF];
+static inline int64_t reduced_cost(const Columns *c, int64_t k, const Duals *duals) {
+    int64_t cost = c->cuts[k] * duals->unit + c->blinded[k] * duals->blinding;
+    const int64_t *sums = duals->sums;
+    for (uint64_t rest = group_at(c, k); rest; rest >>= PART, sums += 1 << PART) cost -= sums[rest & ((1 << PART) - 1)];
+    return cost;
 }
 
 /* The column of least reduced cost with each robot, (robots) where it is negative, else -1; returns the least of all. */
-EXPORTED int64_t price(int robots, int64_t count, const uint32_t *groups, const uint8_t *cuts, const uint8_t *blinded,
-                       const Duals *duals, int64_t *cheapest) {
-    int64_t best[32], least = INT64_MAX, worst = -1;
+EXPORTED int64_t price(int robots, const Columns *columns, const Duals *duals, int64_t *cheapest) {
+    int64_t best[64], least = INT64_MAX, worst = -1;
     for (int i = 0; i < robots; i++) best[i] = -1, cheapest[i] = -1;
-    for (int64_t k = 0; k < count; k++) {
-        int64_t cost = reduced_cost(duals, groups[k], cuts[k], blinded[k]);
+    for (int64_t k = 0; k < columns->count; k++) {
+        int64_t cost = reduced_cost(columns, k, duals);
         if (cost < least) least = cost;
         if (cost >= worst) continue;
-        uint32_t rest = groups[k];
-        while (rest) {
-            int i = next_robot(&rest);
+        for (uint64_t rest = group_at(columns, k); rest; rest &= rest - 1) {
+            int i = lowest(rest);
             if (cost < best[i]) best[i] = cost, cheapest[i] = k;
         }
         worst = best[0];
@@ -85,14 +88,31 @@ EXPORTED int64_t price(int robots, int64_t count, const uint32_t *groups, const 
 }
 
 /* The columns of a reduced cost of at most `gap`, as many as there is `room` for; returns how many there are. */
-EXPORTED int64_t within_gap(int64_t count, const uint32_t *groups, const uint8_t *cuts, const uint8_t *blinded,
-                            const Duals *duals, int64_t gap, int64_t room, int64_t *columns, int64_t *costs) {
+EXPORTED int64_t within_gap(const Columns *columns, const Duals *duals, int64_t gap, int64_t room, int64_t *chosen,
+                            int64_t *costs) {
     int64_t n = 0;
-    for (int64_t k = 0; k < count; k++) {
-        int64_t cost = reduced_cost(duals, groups[k], cuts[k], blinded[k]);
+    for (int64_t k = 0; k < columns->count; k++) {
+        int64_t cost = reduced_cost(columns, k, duals);
         if (cost > gap) continue;
-        if (n < room) columns[n] = k, costs[n] = cost;
+        if (n < room) chosen[n] = k, costs[n] = cost;
         n++;
     }
+    return n;
+}
+
+/* At most `size` robots of `set` sense in a group that has those of `protected` in `set`. Raises the robots to blind, and keeps
+   the columns in which at most `most` are, in place; returns how many. */
+EXPORTED int64_t restrict_columns(Columns *columns, uint64_t set, int size, uint64_t protected, int most) {
+    int64_t n = 0;
+    for (int64_t k = 0; k < columns->count; k++) {
+        uint64_t group = group_at(columns, k);
+        int blinded = columns->blinded[k];
+        if (!(set & protected & ~group) && size_of(group & set) - size > blinded) blinded = size_of(group & set) - size;
+        if (blinded > most) continue;
+        if (columns->wide) ((uint64_t *)columns->groups)[n] = group;
+        else ((uint32_t *)columns->groups)[n] = (uint32_t)group;
+        columns->cuts[n] = columns->cuts[k], columns->blinded[n++] = (uint8_t)blinded;
+    }
+    columns->count = n;
     return n;
 }

@@ -23,6 +23,8 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[12] = sizeof(CutAnneal);
     sizes[13] = sizeof(Greedy);
     sizes[14] = sizeof(Descent);
+    sizes[15] = sizeof(Columns);
+    sizes[16] = sizeof(Duals);
 }
 
 /* Those of the searches for best plans. */

@@ -48,10 +48,19 @@ typedef struct {
     int64_t depth, nodes, most_nodes;  /* depth -1 at the end; nodes so far, and before a pause */
 } Cover;
 
-/* Integer duals, in units of a link: `low`, `high` sums over sets of the first HALF robots and of the others, `unit` of
-   a link, `blinding` of a blinded robot. */
+/* Groups that an attack may leave; as bit masks of 64 bits where they are `wide`, of 32 elsewhere. */
 typedef struct {
-    const int64_t *low, *high;
+    int64_t count, wide;
+    void *groups;
+    uint8_t *cuts, *blinded;           /* links that leave each, and robots to blind in it */
+} Columns;
+
+enum { PART = 12 };
+
+/* Integer duals, in units of a link: `sums` over sets of the first PART robots, of the next, and so on; `unit` of a link,
+   `blinding` of a blinded robot. */
+typedef struct {
+    const int64_t *sums;               /* (parts, 2**PART) */
     int64_t unit, blinding;
 } Duals;
 
