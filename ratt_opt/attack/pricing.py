@@ -99,12 +99,6 @@ class Plan:
         with self._asked(threshold, effort) as search:
             return int(call(search.handle, address(inside)))
 
-    def some_may_be_below(self, group: BoolArray, size: int, threshold: float) -> bool:
-        """Whether ``size`` robots of a group (N,) may be worth less than the threshold; true if that is not decided."""
-        call = function("some_may_be_below", c_int, c_void_p, c_void_p, c_int64)
-        with self._asked(threshold) as search:
-            return bool(call(search.handle, address(np.ascontiguousarray(group)), size))
-
     def _asked(self, threshold: float, effort: int | None = None) -> GroupSearch:
         nothing = np.zeros(self.robots, dtype=np.int64)
         question = Question(threshold, self.robots, nothing, 0, 0, effort=effort)

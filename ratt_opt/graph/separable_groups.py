@@ -57,10 +57,6 @@ class SeparableGroups:
         before = np.concatenate([[0], np.cumsum(kept)])
         return replace(self, masks=self.masks[kept], links=self.links[kept], start=before[self.start])
 
-    def by_robots(self) -> IntArray:
-        """(G,) the groups by bit mask over robots instead of places."""
-        return np.asarray(sum((self.masks >> place & 1) << int(i) for place, i in enumerate(self.robots)))
-
 
 def separable_groups(threat: Threat, most: int, budget: Budget | None = None) -> SeparableGroups | None:
     """Tabulate the separable groups; ``None`` if there are more than ``most``, or more robots than a mask holds.

@@ -335,7 +335,7 @@ static Node *whole(Search *s, const uint8_t *group) {
 }
 
 /* Whether `size` robots of a group may be below the threshold, as far as the effort tells. */
-EXPORTED int some_may_be_below(Search *s, const uint8_t *group, int64_t size) {
+static int some_may_be_below(Search *s, const uint8_t *group, int64_t size) {
     Node *node = whole(s, group);
     int inside = 0;
     for (int i = 0; i < s->robots; i++) inside += group[i];

@@ -21,11 +21,4 @@ static inline int size_of(uint64_t set) {
 /* The lowest robot of a set that is not empty. */
 static inline int lowest(uint64_t set) { return __builtin_ctzll(set); }
 
-/* Take the lowest robot out of a set that is not empty, and return it. */
-static inline int next_robot(uint32_t *set) {
-    int robot = __builtin_ctz(*set);
-    *set &= *set - 1;
-    return robot;
-}
-
 #endif
