@@ -21,7 +21,7 @@ from ratt_opt.attack.exact_cover import STEPS, ExactCover
 from ratt_opt.attack.least_sets.most_below import MostBelow
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.threshold_search import Answer, Threshold
-from ratt_opt.budget import Stop
+from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.communication import robots_of
 
 if TYPE_CHECKING:
@@ -33,10 +33,10 @@ if TYPE_CHECKING:
     from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["FEW_LISTED", "ListedColumns", "ListedSearch"]
+__all__ = ["ListedColumns", "ListedSearch"]
 
-FEW_LISTED, STEP = 20_000, 0.02
-"""If columns are more than these few, a threshold that far below the attack in hand is decided first."""
+STEP = 0.02
+"""A threshold that far below the attack in hand is decided first, once a budget has ended the search."""
 
 MOST_WITHIN = 1_000_000
 """Columns within the gap, above which no cover is searched."""
@@ -50,7 +50,9 @@ class ListedSearch:
 
     def __init__(self, task: AttackTask, team: PackedTeam, groups: GroupList) -> None:
         self.task, self._team, self._groups = task, team, groups
-        self._begun: ListedColumns | None = None
+        self._begun: dict[float, ListedColumns] = {}
+        """Thresholds that are begun."""
+        self._was_ended = False
 
     def run(self) -> Stop:
         """Decide thresholds; an attack that is no worse than the one in hand, or an open threshold, ends the search.
@@ -62,9 +64,15 @@ class ListedSearch:
         bracket = self.task.bracket
         while not bracket.is_closed:
             threshold = self._threshold()
-            if self._begun is None or self._begun.threshold != threshold:
-                self._begun = ListedColumns(self.task.problem.threat, self._team, self._groups, threshold)
-            answer = self._begun.decide(self.task.budget)
+            self._begun = {one: begun for one, begun in self._begun.items() if one in {threshold, bracket.goal}}
+            if threshold not in self._begun:
+                threat = self.task.problem.threat
+                self._begun[threshold] = ListedColumns(threat, self._team, self._groups, threshold)
+            try:
+                answer = self._begun[threshold].decide(self.task.budget)
+            except OutOfBudget:
+                self._was_ended = True
+                raise
             if answer.verdict is Threshold.REFUTED:
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self.task.offer(answer.partition.attack(self.task.problem.threat)):
@@ -74,7 +82,7 @@ class ListedSearch:
     def _threshold(self) -> float:
         bracket = self.task.bracket
         first = bracket.upper - STEP * abs(bracket.upper)
-        return first if len(self._groups) > FEW_LISTED and bracket.lower < first else bracket.goal
+        return first if self._was_ended and bracket.lower < first else bracket.goal
 
 
 class ListedColumns:

@@ -10,7 +10,7 @@ from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bou
 from ratt_opt.attack.columns import MOST_CUT, groups_of
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
-from ratt_opt.attack.listed_columns import FEW_LISTED, ListedSearch
+from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.size_vectors.possible_sizes import LARGEST, possible_sizes_bound, unprotected_bound
 from ratt_opt.attack.size_vectors.search import SizeVectorSearch
@@ -29,6 +29,9 @@ __all__ = ["CriterionAttack"]
 MOST_LISTED, LISTING_SHARE = 3_000_000, 0.1
 """Groups that an attack may leave for columns to be listed, which take ten bytes each, twice; share of the seconds left
 for the list. A million take a tenth of a second on sparse graphs, and many more on dense ones of 50 robots."""
+
+BRIEFLY_LISTED = 20_000
+"""The same of a brief attack."""
 
 LISTED_STARTS = 4
 """Annealed attacks before the first listed columns."""
@@ -152,7 +155,7 @@ class CriterionAttack(TeamAttack):
         assert self._prices is not None
         assert self._team is not None
         if self._listed is None:
-            most, part = FEW_LISTED if self._is_brief else MOST_LISTED, self.task.budget.part(LISTING_SHARE)
+            most, part = BRIEFLY_LISTED if self._is_brief else MOST_LISTED, self.task.budget.part(LISTING_SHARE)
             groups = groups_of(self._threat)
             if not groups.has_listed(most, part):
                 return

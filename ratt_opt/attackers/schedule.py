@@ -21,7 +21,7 @@ which come later, are worse for the team."""
 BOUND_SHARE, BOUND_NODES = 0.3, 500_000
 """Of what is left, for the weakest group of the forced size; prices get the rest."""
 
-SOON_SHARE, LISTED_SHARE, LISTED_NODES = 0.25, 0.5, 20_000_000
+SOON_SHARE, LISTED_SHARE, LISTED_NODES = 0.4, 0.5, 20_000_000
 """Of what is left, for columns of all groups that an attack may leave: after few annealed attacks, and after all. Most
 attacks with few links close in a fraction of a second; hubs of 30 robots have one that a few starts do not find."""
 

@@ -2,12 +2,14 @@
 #include "records.h"
 #include "sets.h"
 
-/* The robot next to those inside, and not decided, with the most links to decided ones; -1 where there is none. */
-static int most_linked(const uint64_t *neighbours, const Branch *node) {
+/* The robot next to those inside, and not decided, with the most links to decided ones; -1 where there is none. Adds to *cut the
+   links that such robots cost at least, each those to robots inside or those to robots outside. */
+static int most_linked(const uint64_t *neighbours, const Branch *node, int64_t *cut) {
     int pick = -1, most = -1;
     for (uint64_t rest = node->near & ~(node->inside | node->outside); rest; rest &= rest - 1) {
-        int i = lowest(rest), links = size_of(neighbours[i] & (node->inside | node->outside));
-        if (links > most) pick = i, most = links;
+        int i = lowest(rest), inside = size_of(neighbours[i] & node->inside), outside = size_of(neighbours[i] & node->outside);
+        *cut += inside < outside ? inside : outside;
+        if (inside + outside > most) pick = i, most = inside + outside;
     }
     return pick;
 }
@@ -28,8 +30,9 @@ EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint6
             continue;
         }
         Branch node = stack[--position[1]];
-        if (node.cut > most) continue;
-        int pick = most_linked(neighbours, &node);
+        int64_t cut = node.cut;
+        int pick = most_linked(neighbours, &node, &cut);
+        if (cut > most) continue;
         if (pick < 0) {
             groups[found] = node.inside;
             cuts[found++] = (uint16_t)node.cut;
