@@ -110,6 +110,7 @@ class LeastSetSearch:
     The caller may lower ``threshold`` at every step of :meth:`run`; sets between are then passed over.
 
     ``floor`` : no set is worth less; ``inside``, ``outside`` : only sets that contain the first and avoid the second
+    ``in_depth`` : partial sets looked at before branch and bound, at most
     """
 
     def __init__(
@@ -121,8 +122,9 @@ class LeastSetSearch:
         *,
         inside: frozenset[int] = frozenset(),
         outside: frozenset[int] = frozenset(),
+        in_depth: int | None = None,
     ) -> None:
-        self.team, self.size, self.threshold = team, size, threshold
+        self.team, self.size, self.threshold, self._in_depth = team, size, threshold, in_depth
         self._native = team.native()
         self._inside, self._outside = inside, outside
         root = SetNode(floor, 0, inside, outside)
@@ -162,6 +164,7 @@ class LeastSetSearch:
         """Search in depth without bounds; to the end if there are none."""
         most = next(nodes for robots, nodes in WHOLE if len(self.team.single) <= robots)
         most = min(most, BY_AXIS) if self.team.is_by_axis else most
+        most = most if self._in_depth is None else min(most, self._in_depth)
         while sets.nodes < most or not self.team.is_planar:
             found = sets.next(self.threshold, sets.nodes + most + 1, budget)
             if found is False:
