@@ -185,8 +185,8 @@ COMMAND = {
 """What the command ``attack`` asks for, in this order, and where it is."""
 WAYS = {
     "listed columns": {},
-    "many listed columns": {(listed_columns, "FEW_LISTED"): 0},
-    "dual prices": {(criterion_attack, "MOST_LISTED"): 0, (criterion_attack, "FEW_LISTED"): 0},
+    "many listed columns": {(listed_columns, "BRIEFLY_LISTED"): 0},
+    "dual prices": {(criterion_attack, "MOST_LISTED"): 0, (criterion_attack, "BRIEFLY_LISTED"): 0},
     "dense": {(criterion_attack, "DENSE"): 0.0},
     "no lists": NO_LISTS | {(size_vector_search, "ALIKE"): 0.0},
     "families": FAMILIES,

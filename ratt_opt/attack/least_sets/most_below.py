@@ -26,8 +26,8 @@ all others on networks of 50 robots, which then stay open."""
 
 
 IN_DEPTH = 4_000
-"""Partial sets that a question looks at before branch and bound: with ten times as many, dense networks of 50 robots take
-two to three times the seconds; networks of 30 robots take the same."""
+"""Partial sets that a question looks at before branch and bound: with ten times as many, dense networks of 50 robots
+take two to three times the seconds; networks of 30 robots take the same."""
 
 
 class MostBelow:
