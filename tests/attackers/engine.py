@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import ratt_opt as ro
-from ratt_opt.attack import all_sets, listed_columns
+from ratt_opt.attack import all_sets
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.columns import groups_of
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
@@ -185,7 +185,6 @@ COMMAND = {
 """What the command ``attack`` asks for, in this order, and where it is."""
 WAYS = {
     "listed columns": {},
-    "many listed columns": {(listed_columns, "BRIEFLY_LISTED"): 0},
     "dual prices": {(criterion_attack, "MOST_LISTED"): 0, (criterion_attack, "BRIEFLY_LISTED"): 0},
     "dense": {(criterion_attack, "DENSE"): 0.0},
     "no lists": NO_LISTS | {(size_vector_search, "ALIKE"): 0.0},
