@@ -69,6 +69,13 @@ class ExactCover:
         )
         self._record = CoverRecord(robots, words, len(fitting), *map(address, self._arrays), 0, 0, 0)
 
+    def found(self, budget: Budget) -> list[int]:
+        """Places of the columns of the next cover, none if there is none; raises ``OutOfBudget`` as :meth:`next`."""
+        places = None
+        while places is None:
+            places = self.next(budget, STEPS)
+        return places if isinstance(places, list) else []
+
     def next(self, budget: Budget, steps: int) -> list[int] | bool | None:
         """Places of the columns of a cover; ``False`` if there is none, ``None`` once ``steps`` were looked at.
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.columns import UNIT, Column, Columns
-from ratt_opt.attack.exact_cover import STEPS, ExactCover
+from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.least_sets.most_below import MostBelow
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.threshold_search import Answer, Threshold
@@ -128,7 +128,8 @@ class ListedColumns:
                 paid = np.column_stack([costs, few.blinded, few.cuts]).astype(np.int64)
                 masks = few.groups[:, None].astype(np.uint64)
                 self._covers = few, ExactCover(few.robots, masks, paid, (gap, n_blinded, most_cut))
-            chosen = self._next_cover(*self._covers, budget)
+            few, covers = self._covers
+            chosen = few.some(covers.found(budget))
             self._covers = None
             if not chosen:
                 return Answer(verdict=Threshold.REFUTED)
@@ -156,14 +157,6 @@ class ListedColumns:
             if most < column.group.bit_count() - column.blinded and most < self._most_below.known(column.group):
                 self._most_below.limit(column.group, most, budget)
         return len(self._most_below.limits) > before
-
-    @staticmethod
-    def _next_cover(columns: Columns, search: ExactCover, budget: Budget) -> list[Column]:
-        """A cover; empty if there is none."""
-        places = None
-        while places is None:
-            places = search.next(budget, STEPS)
-        return columns.some(places) if isinstance(places, list) else []
 
     def _partition(self, cover: Sequence[Column]) -> Partition:
         """The attack that leaves these groups."""

@@ -21,7 +21,7 @@ import numpy as np
 from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.dual_prices.column_search import ColumnSearch, DualRepair, question_of
 from ratt_opt.attack.dual_prices.program import GroupPrices, KnownGroup
-from ratt_opt.attack.exact_cover import STEPS, ExactCover, packed
+from ratt_opt.attack.exact_cover import ExactCover, packed
 from ratt_opt.attack.pricing import UNIT, DualPrices
 from ratt_opt.attack.threshold_search import Answer, Threshold
 
@@ -227,7 +227,5 @@ class ThresholdDecision:
         cuts = np.rint(2 * self.prices.half_cuts(robots)).astype(np.int64)
         costs = np.array([[max(column.cost, 0), column.need] for column in columns], dtype=np.int64)
         most = gap, self.threat.n_blinded, 2 * self.threat.alpha_c
-        cover, places = ExactCover(self._plan.robots, packed(robots), np.column_stack([costs, cuts]), most), None
-        while places is None:
-            places = cover.next(budget, STEPS)
-        return [columns[k] for k in places] if isinstance(places, list) else []
+        cover = ExactCover(self._plan.robots, packed(robots), np.column_stack([costs, cuts]), most)
+        return [columns[k] for k in cover.found(budget)]

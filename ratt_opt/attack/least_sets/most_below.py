@@ -19,11 +19,9 @@ __all__ = ["MostBelow"]
 NONE = -64
 """Of a group whose protected robots alone are worth the threshold: more are to blind than there are."""
 
-
 ENLARGING = 1_000
 """Nodes for the question whether a limit holds with one more robot. Without an end, these take ten times the seconds of
 all others on networks of 50 robots, which then stay open."""
-
 
 IN_DEPTH = 4_000
 """Partial sets that a question looks at before branch and bound: with ten times as many, dense networks of 50 robots
