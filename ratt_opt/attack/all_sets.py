@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.columns import groups_of
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Links, Team, has_loops, work_of_value
 from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.communication import robots_of
+from ratt_opt.graph.group_list import groups_of
 from ratt_opt.setfunctions.metered import Metered, unmetered
 
 if TYPE_CHECKING:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_int, c_int64, c_uint64, c_void_p
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.graph.group_list import GroupList
+from ratt_opt.graph.group_list import NARROW
 from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
@@ -17,26 +17,9 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.sets_below import SetsBelow
-    from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["MOST_CUT", "UNIT", "Column", "Columns", "ColumnsRecord", "Duals", "DualsRecord", "groups_of"]
-
-
-MOST_CUT = 255
-"""Links that leave a group, at most: a byte."""
-NARROW = 32
-"""Robots up to which a group's bit mask has 32 bits."""
-
-
-def groups_of(threat: Threat) -> GroupList:
-    """The list of a threat's groups, for at most ``MOST_CUT`` links to cut; the last few graphs' are kept."""
-    return _kept(threat.graph, threat.alpha_c, threat.protected_links)
-
-
-@lru_cache(maxsize=2)
-def _kept(graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> GroupList:
-    return GroupList(graph, most_cut, protected_links, (np.uint32 if graph.n_robots <= NARROW else np.int64, np.uint8))
+__all__ = ["UNIT", "Column", "Columns", "ColumnsRecord", "Duals", "DualsRecord"]
 
 
 UNIT = 1 << 20

@@ -7,7 +7,6 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bound
-from ratt_opt.attack.columns import MOST_CUT, groups_of
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.listed_columns import ListedSearch
@@ -18,6 +17,7 @@ from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import OutOfBudget
+from ratt_opt.graph.group_list import MOST_CUT, groups_of
 from ratt_opt.graph.separable_groups import LARGEST_MASK
 
 if TYPE_CHECKING:

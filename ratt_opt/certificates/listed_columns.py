@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.columns import UNIT, Columns, groups_of
+from ratt_opt.attack.columns import UNIT, Columns
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import MOST_ROBOTS
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.verifier.work import seconds_left
+from ratt_opt.graph.group_list import groups_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

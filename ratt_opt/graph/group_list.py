@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ctypes import c_int, c_int64, c_void_p
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,34 +17,50 @@ if TYPE_CHECKING:
 
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import CommunicationGraph, Link
+    from ratt_opt.graph.threat import Threat
 
-__all__ = ["BRANCH", "GroupList"]
+__all__ = ["BRANCH", "MOST_CUT", "NARROW", "GroupList", "groups_of"]
+
+MOST_CUT = 255
+"""Links that leave a group, up to which their number is a byte."""
+NARROW = 32
+"""Robots up to which a group's bit mask has 32 bits."""
 
 STEPS = 20_000
 """Steps between two looks at the clock, each of which lists one group at most: some milliseconds."""
 BRANCH = np.dtype([*((name, np.uint64) for name in ("inside", "outside", "near")), ("cut", np.int64)])
 
 
+def groups_of(threat: Threat) -> GroupList:
+    """The list of a threat's groups; the last few graphs' are kept."""
+    return _kept(threat.graph, threat.alpha_c, threat.protected_links)
+
+
+@lru_cache(maxsize=2)
+def _kept(graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> GroupList:
+    return GroupList(graph, most_cut, protected_links)
+
+
 class GroupList:
     """The groups of one graph and link budget, listed as far as has been asked.
 
     ``robots`` : number of robots
-    ``kinds`` : types of the bit masks and of the numbers of links; of small graphs, small ones
+
+    Bit masks are ``uint32`` up to ``NARROW`` robots, else ``int64``; numbers of links ``uint8`` up to ``MOST_CUT``.
 
     Raises ``InputError`` : the robots are too many for a mask.
     """
 
-    def __init__(
-        self,
-        graph: CommunicationGraph,
-        most_cut: int,
-        protected_links: frozenset[Link],
-        kinds: tuple[type[np.integer[Any]], type[np.integer[Any]]] = (np.int64, np.int64),
-    ) -> None:
-        most = int(np.iinfo(kinds[0]).max).bit_length()
+    def __init__(self, graph: CommunicationGraph, most_cut: int, protected_links: frozenset[Link]) -> None:
+        most = int(np.iinfo(np.int64).max).bit_length()
         if graph.n_robots > most:
             raise InputError("graph", f"must have at most {most} robots to list its groups", graph.n_robots)
-        self.robots, self._most_cut, self._kinds = graph.n_robots, most_cut, kinds
+        self.robots, self._most_cut = graph.n_robots, most_cut
+        largest_cut = min(most_cut, graph.n_robots**2 // 4)
+        self._types = (
+            np.dtype(np.uint32 if graph.n_robots <= NARROW else np.int64),
+            np.dtype(np.uint8 if largest_cut <= MOST_CUT else np.int64),
+        )
         self._neighbours = np.array(neighbour_masks(graph.n_robots, graph.links), dtype=np.uint64)
         self._protected = np.array(neighbour_masks(graph.n_robots, protected_links), dtype=np.uint64)
         self._stack, self._position = np.zeros(2 * graph.n_robots + 2, BRANCH), np.zeros(2, np.int64)
@@ -70,7 +87,7 @@ class GroupList:
         found = call(
             self.robots, *map(address, given), self._most_cut, *state, STEPS, STEPS, address(groups), address(cuts)
         )
-        self._parts.append((groups[:found].astype(self._kinds[0]), cuts[:found].astype(self._kinds[1])))
+        self._parts.append((groups[:found].astype(self._types[0]), cuts[:found].astype(self._types[1])))
         self._count += found
 
     def has_listed(self, most: int, budget: Budget) -> bool:
@@ -94,7 +111,7 @@ class GroupList:
     def so_far(self) -> tuple[NDArray[Any], NDArray[Any]]:
         """Bit masks (G,) of the groups so far, and links that leave each (G,)."""
         if len(self._parts) != 1:
-            empty = tuple(np.empty(0, kind) for kind in self._kinds)
+            empty = tuple(np.empty(0, kind) for kind in self._types)
             masks, links = (np.concatenate([empty[k], *(part[k] for part in self._parts)]) for k in range(2))
             self._parts = [(masks, links)]
         return self._parts[0]

@@ -17,12 +17,13 @@ import numpy as np
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
-from ratt_opt.graph.group_list import GroupList
+from ratt_opt.graph.group_list import groups_of
 from ratt_opt.native.library import address, checked, function
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.graph.communication import CommunicationGraph, Link
+    from ratt_opt.graph.communication import CommunicationGraph
+    from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["LARGEST_MASK", "PartitionSearch", "SeparableGroups", "separable_groups"]
@@ -68,51 +69,34 @@ def separable_groups(threat: Threat, most: int, budget: Budget | None = None) ->
     """
     if threat.graph.n_robots > LARGEST_MASK:
         return None
-    listing = _listing(threat.graph, threat.alpha_c, threat.protected_links)
-    if not listing.groups.has_listed(min(most, LONGEST_LIST), budget or Budget()):
+    groups = groups_of(threat)
+    if not groups.has_listed(min(most, LONGEST_LIST), budget or Budget()):
         return None
-    return SeparableGroups(threat, *listing.placed())
+    return SeparableGroups(threat, *_placed(threat.graph, groups))
 
 
 LONGEST_LIST = 1_000_000
 """Groups listed at most: sixteen megabytes."""
 
 
-class _Listing:
-    """The list of one graph's separable groups, as far as it has come."""
-
-    def __init__(self, graph: CommunicationGraph, alpha_c: int, protected_links: frozenset[Link]) -> None:
-        self.groups = GroupList(graph, alpha_c, protected_links)
-        self._graph = graph
-        self._placed: tuple[IntArray, ...] | None = None
-
-    def placed(self) -> tuple[IntArray, ...]:
-        """The fields of :class:`SeparableGroups` for all groups, read only."""
-        if self._placed is None:
-            neighbours = np.array(neighbour_masks(self._graph.n_robots, self._graph.links), dtype=np.int64)
-            self._placed = _placed(*self.groups.so_far(), neighbours)
-            for one in self._placed:
-                one.flags.writeable = False
-        return self._placed
-
-
-@lru_cache(maxsize=4)
-def _listing(graph: CommunicationGraph, alpha_c: int, protected_links: frozenset[Link]) -> _Listing:
-    return _Listing(graph, alpha_c, protected_links)
-
-
-def _placed(masks: IntArray, links: IntArray, neighbours: IntArray) -> tuple[IntArray, ...]:
-    n_robots = len(neighbours)
+@lru_cache(maxsize=2)
+def _placed(graph: CommunicationGraph, groups: GroupList) -> tuple[IntArray, ...]:
+    """The fields of :class:`SeparableGroups` for all groups, read only."""
+    masks, links = (array.astype(np.int64) for array in groups.so_far())
+    n_robots, neighbours = graph.n_robots, neighbour_masks(graph.n_robots, graph.links)
     robots = np.argsort([-int((masks >> i & 1).sum()) for i in range(n_robots)], kind="stable")
     place = np.argsort(robots).tolist()
     moved = np.zeros_like(masks)
     for i in range(n_robots):
         moved |= (masks >> i & 1) << place[i]
-    near = np.array([sum(1 << int(place[j]) for j in range(n_robots) if neighbours[i] >> j & 1) for i in robots])
+    near = [sum(1 << place[j] for j in range(n_robots) if neighbours[i] >> j & 1) for i in robots.tolist()]
     lowest = np.bitwise_count((moved & -moved) - 1).astype(np.int64)
     order = np.lexsort((moved, lowest))
     start = np.searchsorted(lowest[order], np.arange(n_robots + 1))
-    return moved[order], links[order], start, robots, near.astype(np.int64)
+    placed = moved[order], links[order], start, robots, np.array(near, dtype=np.int64)
+    for one in placed:
+        one.flags.writeable = False
+    return placed
 
 
 LEVEL = np.dtype([("left", np.uint64), *((name, np.int64) for name in ("cut", "next", "group"))])

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack import columns as columns_module
 from ratt_opt.attack import exact_cover, sets_below
 from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, Duals, DualsRecord
@@ -56,7 +55,7 @@ def check_attack(threat, values, answer, threshold):
 
 
 def asked(threat, below, threshold, **options):
-    return decide(threat, below, columns_module.groups_of(threat), threshold, Budget(), steps=10**9, **options)
+    return decide(threat, below, group_list.groups_of(threat), threshold, Budget(), steps=10**9, **options)
 
 
 @pytest.mark.parametrize("seed", range(150))
@@ -214,7 +213,7 @@ def test_the_budget_is_asked_on_the_way(monkeypatch):
     threat = Threat(problem.communication, 3, 30)
     team = Team.of(problem.objective, np.arange(12))
     with pytest.raises(OutOfBudget):
-        columns_module.groups_of(threat).all(Spent())
+        group_list.groups_of(threat).all(Spent())
     with pytest.raises(OutOfBudget):
         SetsBelow(team).mark(1.0, Spent())
 

@@ -14,7 +14,6 @@ import numpy as np
 import ratt_opt as ro
 from ratt_opt.attack import all_sets
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.columns import groups_of
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search as set_search
 from ratt_opt.attack.least_sets.packed_team import PackedTeam
@@ -40,6 +39,7 @@ from ratt_opt.attackers.any_function import annealed_attacks, exchange_attack
 from ratt_opt.attackers.attack_tree import try_every_attack
 from ratt_opt.attackers.link_choice import best_links
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.group_list import groups_of
 from ratt_opt.setfunctions.metered import Metered
 
 if TYPE_CHECKING:

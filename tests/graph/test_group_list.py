@@ -15,19 +15,20 @@ from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.group_list import GroupList
 from tests.strategies import random_problem
 
-SMALL, LARGE = (np.uint32, np.uint8), (np.int64, np.int64)
-
 
 @pytest.mark.parametrize("seed", range(40))
 def test_groups_against_all_sets(seed, monkeypatch):
     """In one part and in many; in few bytes and in more."""
     monkeypatch.setattr(group_list, "STEPS", [group_list.STEPS, 3][seed % 2])
+    is_large = seed // 2 % 2
+    if is_large:
+        monkeypatch.setattr(group_list, "NARROW", 0)
+        monkeypatch.setattr(group_list, "MOST_CUT", -1)
     rng = np.random.default_rng(seed)
     threat = random_problem(rng, int(rng.integers(1, 8)), kind="logdet", controls=1).threat
     graph = nx.Graph(threat.graph.links)
     graph.add_nodes_from(range(threat.graph.n_robots))
-    kinds = [SMALL, LARGE][seed // 2 % 2]
-    listed, cuts = GroupList(threat.graph, threat.alpha_c, threat.protected_links, kinds).all(Budget())
+    listed, cuts = GroupList(threat.graph, threat.alpha_c, threat.protected_links).all(Budget())
     expected = {}
     for size in range(1, threat.graph.n_robots + 1):
         for inside in combinations(range(threat.graph.n_robots), size):
@@ -38,7 +39,7 @@ def test_groups_against_all_sets(seed, monkeypatch):
                 and not threat.protected_links.intersection(leaving)
             ):
                 expected[sum(1 << i for i in inside)] = len(leaving)
-    assert (listed.dtype, cuts.dtype) == kinds
+    assert (listed.dtype, cuts.dtype) == ((np.int64, np.int64) if is_large else (np.uint32, np.uint8))
     assert dict(zip(listed.tolist(), cuts.tolist(), strict=True)) == expected
 
 
@@ -49,13 +50,17 @@ def test_the_smallest_lists(robots):
     assert (masks.tolist(), links.tolist(), len(groups)) == ([1] * robots, [0] * robots, robots)
 
 
-def test_groups_of_as_many_robots_as_a_mask_has():
-    """All parts of a row that two cuts leave; and no links of one robot's that a small number could not hold."""
-    for kinds, robots in ((SMALL, 32), (LARGE, 63)):
-        row = CommunicationGraph.from_networkx(nx.path_graph(robots), robots)
-        masks, links = GroupList(row, 2, frozenset(), kinds).all(Budget())
-        parts = {((1 << b) - (1 << a), (a > 0) + (b < robots)) for b in range(1, robots + 1) for a in range(b)}
-        assert set(zip(masks.tolist(), links.tolist(), strict=True)) == parts
-        assert len(masks) == len(parts)
-        with pytest.raises(InputError, match=f"must have at most {robots} robots"):
-            GroupList(CommunicationGraph(robots + 1, frozenset()), 0, frozenset(), kinds)
+@pytest.mark.parametrize(("robots", "kind"), [(32, np.uint32), (33, np.int64), (63, np.int64)])
+def test_groups_of_as_many_robots_as_a_mask_has(robots, kind):
+    """All parts of a row that two cuts leave."""
+    row = CommunicationGraph.from_networkx(nx.path_graph(robots), robots)
+    masks, links = GroupList(row, 2, frozenset()).all(Budget())
+    parts = {((1 << b) - (1 << a), (a > 0) + (b < robots)) for b in range(1, robots + 1) for a in range(b)}
+    assert set(zip(masks.tolist(), links.tolist(), strict=True)) == parts
+    assert len(masks) == len(parts)
+    assert masks.dtype == kind
+
+
+def test_robots_that_a_mask_does_not_have():
+    with pytest.raises(InputError, match="must have at most 63 robots"):
+        GroupList(CommunicationGraph(64, frozenset()), 0, frozenset())

@@ -7,7 +7,6 @@ import networkx as nx
 import numpy as np
 import pytest
 
-import ratt_opt.graph.separable_groups as separable_groups_module
 from ratt_opt import InputError
 from ratt_opt.budget import Budget
 from ratt_opt.graph import group_list
@@ -48,7 +47,7 @@ def test_a_listing_that_the_budget_ends_goes_on_the_next_time(seed, monkeypatch)
     threat = random_problem(np.random.default_rng(seed), 5 + seed % 4, kind="logdet", controls=1).threat
     expected = set(by_definition(threat))
     monkeypatch.setattr(group_list, "STEPS", 1)
-    separable_groups_module._listing.cache_clear()
+    group_list._kept.cache_clear()
     looks = iter([False, True] * 10**5)
     monkeypatch.setattr(Budget, "is_over", property(lambda _: next(looks)))
     calls = 1
@@ -62,7 +61,7 @@ def test_a_listing_that_the_budget_ends_goes_on_the_next_time(seed, monkeypatch)
 @pytest.mark.parametrize("limit", [1, 10**6])
 def test_partitions_are_all_those_into_groups_of_the_list(seed, limit, monkeypatch):
     """Also when the search is paused after every node, or every group that it looks at."""
-    monkeypatch.setattr(separable_groups_module, "GROUPS_AT_ONCE", [10**6, 1][seed % 2])
+    monkeypatch.setattr("ratt_opt.graph.separable_groups.GROUPS_AT_ONCE", [10**6, 1][seed % 2])
     rng = np.random.default_rng(seed)
     threat = random_problem(rng, 1 + seed % 7, kind="logdet", controls=1).threat
     groups = separable_groups(threat, 10_000)
