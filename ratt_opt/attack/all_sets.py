@@ -1,15 +1,22 @@
-"""The exact attacker of teams whose sets of robots can all be looked at: thresholds, one after the other."""
+"""The exact attacker of teams whose sets of robots can all be looked at: thresholds, one after the other.
+
+An attack leaves groups that cover the team. It leaves less than a threshold if in each group blinding some robots does,
+no more of them in all than ``alpha_s``, and if the groups are cut off by no more links than ``alpha_c``.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from math import inf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.columns import UNIT, Columns
+from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Links, Team, has_loops, work_of_value
-from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.communication import robots_of
 from ratt_opt.graph.group_list import groups_of
@@ -18,8 +25,11 @@ from ratt_opt.setfunctions.metered import Metered, unmetered
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.attack.task import AttackTask
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.group_list import GroupList
+    from ratt_opt.graph.threat import Threat
 
-__all__ = ["LARGEST_LOOKED_AT", "LARGEST_VALUED", "AllSets", "sets_can_be_looked_at"]
+__all__ = ["LARGEST_LOOKED_AT", "LARGEST_VALUED", "AllSets", "Answer", "decide", "sets_can_be_looked_at"]
 
 LARGEST_VALUED = 20
 """Most robots whose sets are all valued where the compiled loops do not have the objective: 2**20 values."""
@@ -43,6 +53,8 @@ LEVELS = 10
 """Values that are told apart once the bracket counts as closed, one threshold each. Mostly there are none."""
 NARROW = 1e-3
 """Relative width of the bracket below which a lower threshold is not asked."""
+MOST_COLUMNS = 2_000_000
+"""Within the gap, above which no cover is searched."""
 
 
 def sets_can_be_looked_at(task: AttackTask) -> bool:
@@ -157,3 +169,50 @@ def _falls(table: FloatArray, rounding: float) -> bool:
     """Whether a set is worth less than one inside it, by more than rounding."""
     halves = (table.reshape(-1, 2, 1 << i) for i in range(len(table).bit_length() - 1))
     return any(bool((pairs[:, 1] < pairs[:, 0] - rounding).any()) for pairs in halves)
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Whether the threshold is reachable, ``None`` if that is left open.
+
+    ``level``, ``following`` : if it is not, what every attack leaves at least, and bit mask of the set that is worth it
+    ``groups``, ``blinded`` : if it is, bit masks of the groups, and of the blinded robots
+    """
+
+    is_reachable: bool | None
+    level: float = inf
+    following: int | None = None
+    groups: tuple[int, ...] = ()
+    blinded: int = 0
+
+
+def decide(
+    threat: Threat, below: SetsBelow, graph: GroupList, threshold: float, budget: Budget, *, steps: int
+) -> Answer:
+    """Ask ``below`` for the threshold, list columns, bound their master, and search covers within its gap.
+
+    ``steps`` : of the search of covers, columns looked at
+
+    Raises
+    ------
+    OutOfBudget : the time is up, nodes are spent, or the user interrupted.
+    """
+    budget.spend()
+    groups, cuts = graph.all(budget)
+    level, following = below.mark(threshold, budget)
+    columns = Columns.of(groups, cuts, below, threat.n_blinded)
+    most_cut = 2 * threat.alpha_c
+    duals = best_duals(columns, threat.n_blinded, most_cut, budget).duals
+    gap = most_cut * UNIT - duals.claim(threat.n_blinded)
+    if gap < 0:
+        return Answer(is_reachable=False, level=level, following=following)
+    chosen = columns.within(duals, gap, MOST_COLUMNS)
+    if chosen is None:
+        return Answer(is_reachable=None)
+    few, costs = chosen
+    places = few.covers(costs, (gap, threat.n_blinded, most_cut)).next(budget, steps)
+    if not isinstance(places, list):
+        return Answer(is_reachable=places, level=level, following=following)
+    covered = few.groups[places].tolist()
+    blinded = sum(group ^ below.largest_inside(group) for group in covered)
+    return Answer(is_reachable=True, groups=tuple(covered), blinded=blinded)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ratt_opt.attack.exact_cover import ExactCover
+from ratt_opt.graph.communication import mask_of
 from ratt_opt.graph.group_list import NARROW
 from ratt_opt.native.library import address, checked, function
 
@@ -135,12 +137,20 @@ class Columns:
         kept = columns[:count][order]
         return Columns(self.robots, self.groups[kept], self.cuts[kept], self.blinded[kept]), costs[:count][order]
 
+    def covers(self, costs: IntArray, most: tuple[int, int, int]) -> ExactCover:
+        """The search for attacks that leave some of these, which are sorted by reduced costs (C,).
+
+        ``most`` : reduced costs, robots to blind and links that leave, of all groups together
+        """
+        paid = np.column_stack([costs, self.blinded, self.cuts]).astype(np.int64)
+        return ExactCover(self.robots, self.groups[:, None].astype(np.uint64), paid, most)
+
     def restrict(self, robots: int, most: int, threat: Threat) -> None:
         """Know that at most ``most`` of some robots (bit mask) sense in groups that have the protected ones of these.
 
         Drops groups with too many robots to blind, in place.
         """
         call = function("restrict_columns", c_int64, POINTER(ColumnsRecord), c_uint64, c_int, c_uint64, c_int)
-        protected = sum(1 << i for i in threat.protected_robots)
+        protected = mask_of(threat.protected_robots)
         count = call(byref(self._record), robots, most, protected, threat.n_blinded)
         self.groups, self.cuts, self.blinded = self.groups[:count], self.cuts[:count], self.blinded[:count]

@@ -17,16 +17,16 @@ import numpy as np
 
 from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.columns import UNIT, Column, Columns
-from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.least_sets.most_below import MostBelow
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.budget import OutOfBudget, Stop
-from ratt_opt.graph.communication import robots_of
+from ratt_opt.graph.communication import mask_of, robots_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ratt_opt.attack.exact_cover import ExactCover
     from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.budget import Budget
@@ -92,7 +92,7 @@ class ListedColumns:
         self._threat, self.threshold = threat, threshold
         masks, cuts = groups.so_far()
         self._columns = Columns(groups.robots, masks.copy(), cuts.copy(), np.zeros_like(cuts))
-        self._most_below = MostBelow(team, threshold, sum(1 << i for i in threat.protected_robots))
+        self._most_below = MostBelow(team, threshold, mask_of(threat.protected_robots))
         self._is_begun, self._restricted = False, 0
         """Whether the strongest robots have their limits; limits that the columns have."""
         self._entered: list[Column] = []
@@ -125,9 +125,7 @@ class ListedColumns:
                 if within is None:
                     return Answer(verdict=Threshold.OPEN)
                 few, costs = within
-                paid = np.column_stack([costs, few.blinded, few.cuts]).astype(np.int64)
-                masks = few.groups[:, None].astype(np.uint64)
-                self._covers = few, ExactCover(few.robots, masks, paid, (gap, n_blinded, most_cut))
+                self._covers = few, few.covers(costs, (gap, n_blinded, most_cut))
             few, covers = self._covers
             chosen = few.some(covers.found(budget))
             self._covers = None

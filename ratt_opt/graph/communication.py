@@ -13,7 +13,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["CommunicationGraph", "Link", "neighbour_masks", "robots_of"]
+__all__ = ["CommunicationGraph", "Link", "mask_of", "neighbour_masks", "robots_of"]
 
 Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
@@ -29,6 +29,11 @@ def neighbour_masks(n_robots: int, links: Iterable[Link]) -> list[int]:
         masks[i] |= bit[j]
         masks[j] |= bit[i]
     return masks
+
+
+def mask_of(robots: Iterable[int]) -> int:
+    """Bit mask of a set of robots."""
+    return sum(1 << i for i in robots)
 
 
 def robots_of(mask: int) -> list[int]:
@@ -87,7 +92,7 @@ class CommunicationGraph:
         """Connected components of ``robots`` once all others are cut off, by lowest robot."""
         if self.is_complete:
             return (robots,) if robots else ()
-        return _components(self._neighbours, sum(1 << i for i in robots))
+        return _components(self._neighbours, mask_of(robots))
 
     def links_between(self, groups: Iterable[Iterable[int]]) -> frozenset[Link]:
         """Links between robots of different groups; every robot is in one group."""
@@ -95,7 +100,7 @@ class CommunicationGraph:
         left = (1 << self.n_robots) - 1
         parts = sorted(([int(i) for i in group] for group in groups), key=len)  # NumPy's integers have 64 bits
         for group in parts[:-1]:  # links of the largest one are met from their other end
-            left &= ~sum(1 << i for i in group)
+            left &= ~mask_of(group)
             for i in group:
                 found.extend((i, j) if i < j else (j, i) for j in _bits(self._neighbours[i] & left))
         return frozenset(found)

@@ -10,6 +10,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attack import exact_cover, sets_below
+from ratt_opt.attack.all_sets import decide
 from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, Duals, DualsRecord
 from ratt_opt.attack.exact_cover import CoverRecord, ExactCover
@@ -19,7 +20,6 @@ from ratt_opt.attack.pricing import QuestionRecord
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.size_vectors.disjoint_sets import ChoiceRecord, DisjointRecord
 from ratt_opt.attack.team import Team, TeamRecord
-from ratt_opt.attack.threshold import decide
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import TreeRecord
 from ratt_opt.curvatures.planar.contexts import DescentRecord

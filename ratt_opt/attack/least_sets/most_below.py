@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.least_sets.search import LeastSetSearch
-from ratt_opt.graph.communication import robots_of
+from ratt_opt.graph.communication import mask_of, robots_of
 
 if TYPE_CHECKING:
     from ratt_opt.attack.least_sets.packed_team import PackedTeam
@@ -78,7 +78,7 @@ class MostBelow:
     def limit_strongest(self, budget: Budget) -> None:
         """Add limits for the strongest robots, any number of them, as far as they say more than those before."""
         for size in range(len(self._strongest), 0, -1):
-            group = sum(1 << i for i in self._strongest[:size])
+            group = mask_of(self._strongest[:size])
             known, most = self.known(group), self.of(group, budget)
             if most < known:
                 self.limits.append((group, most))
@@ -111,7 +111,7 @@ class MostBelow:
         began = budget.nodes
         for found in self._asked[2].run(budget):
             if found is not None:
-                self._below.append(sum(1 << i for i in found))
+                self._below.append(mask_of(found))
             if found is not None or budget.nodes - began > nodes:
                 self._asked = None
                 return True
