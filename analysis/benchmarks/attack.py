@@ -22,8 +22,8 @@ from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
 from ratt_opt.attack.bounds import forced_group_bound
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attack.team import Team
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.budget import Budget
@@ -191,7 +191,7 @@ def _gap_by_sizes(problem: Problem, plan: np.ndarray) -> float:
     first = greedy_attack(problem, plan)
     bracket = AttackBracket(first.attack, first.upper, 0.0)
     task = AttackTask(problem, PlanValues(problem, plan), bracket, Budget())
-    forced_group_bound(task, PackedTeam.planar(problem.objective, plan))
+    forced_group_bound(task, Team.of(problem.objective, plan))
     return relative_gap(bracket.lower, bracket.upper)
 
 

@@ -16,8 +16,8 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.task import AttackTask
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.information import InformationObjective
@@ -47,7 +47,7 @@ def forced_survivors(threat: Threat) -> int:
     return max(by_sizes, counting_bound(threat) - threat.n_blinded, 1 if threat.n_blinded < n_robots else 0)
 
 
-def forced_group_bound(task: AttackTask, team: PackedTeam | None, least: int = 0) -> Stop:
+def forced_group_bound(task: AttackTask, team: Team | None, least: int = 0) -> Stop:
     """Narrow the bracket if no exact search applies: more incumbents, then the weakest group of the forced size.
 
     ``least`` : unblinded robots that are known to be left in some group

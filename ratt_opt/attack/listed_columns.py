@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt.attack.exact_cover import ExactCover
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.task import AttackTask
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
     from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
@@ -48,7 +48,7 @@ class ListedSearch:
     ``groups`` : all that an attack may leave
     """
 
-    def __init__(self, task: AttackTask, team: PackedTeam, groups: GroupList) -> None:
+    def __init__(self, task: AttackTask, team: Team, groups: GroupList) -> None:
         self.task, self._team, self._groups = task, team, groups
         self._begun: dict[float, ListedColumns] = {}
         """Thresholds that are begun."""
@@ -88,7 +88,7 @@ class ListedSearch:
 class ListedColumns:
     """The columns of one threshold, with the robots that are at least to blind in each."""
 
-    def __init__(self, threat: Threat, team: PackedTeam, groups: GroupList, threshold: float) -> None:
+    def __init__(self, threat: Threat, team: Team, groups: GroupList, threshold: float) -> None:
         self._threat, self.threshold = threat, threshold
         masks, cuts = groups.so_far()
         self._columns = Columns(groups.robots, masks.copy(), cuts.copy(), np.zeros_like(cuts))

@@ -63,15 +63,11 @@ class QuestionRecord(Structure):
 
 
 class Plan:
-    """One plan's robots on one network; what is computed of their levels serves every question.
-
-    ``single`` : (N,) individual values
-    """
+    """One plan's robots on one network; what is computed of their levels serves every question."""
 
     def __init__(self, team: Team, links: Links, threat: Threat) -> None:
         self.team, self.links, self.threat = team, links, threat
-        robots = self.robots = team.robots
-        self.single: FloatArray = np.array([team.value(one) for one in np.eye(robots, dtype=np.bool_)])
+        self.robots = team.robots
         self.least_cuts = _least_cuts(threat)
 
     @classmethod

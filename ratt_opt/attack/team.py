@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_void_p
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeGuard
 
 import numpy as np
@@ -13,6 +14,8 @@ from ratt_opt.native.library import address, checked, function
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
@@ -25,6 +28,8 @@ MOST_TABULATED = 16
 """Whose sets are valued in one call."""
 LARGEST_DIMENSION = 64
 """Of states, in the loops."""
+PLANE = 2
+"""Dimension of states for which criteria are in closed form."""
 
 
 def has_loops(objective: SetFunction) -> TypeGuard[InformationObjective]:
@@ -58,52 +63,72 @@ class TeamRecord(Structure):
 class Team:
     """What the robots of one plan tell about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
-    ``criterion`` : the objective's ``compiled_code``; ``weights`` : (M,); ``prior`` : (M, T) prior information
+    ``objective`` : a criterion that the loops have; ``weights`` : (M,) its own; ``prior`` : (M, T) prior information
     ``information`` : (N, M, T) of each robot's element
 
     Raises
     ------
-    InputError : a shape or a type is another, or d > 64.
+    InputError : a shape or a type is another, or the loops do not have the objective.
     """
 
-    def __init__(
-        self, criterion: int, dimension: int, weights: FloatArray, prior: FloatArray, information: FloatArray
-    ) -> None:
-        robots, targets, entries = len(information), len(prior), dimension * (dimension + 1) // 2
-        if not 1 <= dimension <= LARGEST_DIMENSION:
-            raise InputError("dimension", f"must be in [1, {LARGEST_DIMENSION}]", dimension)
-        arrays = (
-            checked("weights", weights, np.float64, (targets,)),
-            checked("prior", prior, np.float64, (targets, entries)),
-            checked("information", information, np.float64, (robots, targets, entries)),
-            np.zeros(targets),
-        )
-        self.robots, self._arrays = robots, arrays  # the record has their addresses only
-        self.record = TeamRecord(robots, targets, dimension, criterion, *map(address, arrays), 0.0)
-        function("criteria_before", None, POINTER(TeamRecord), c_void_p)(self.record, address(arrays[-1]))
+    def __init__(self, objective: InformationObjective, prior: FloatArray, information: FloatArray) -> None:
+        if not has_loops(objective):
+            raise InputError("objective", "must be one that the loops have", type(objective).__name__)
+        robots, targets, d = len(information), objective.n_targets, objective.dimension
+        entries = d * (d + 1) // 2
+        self.objective, self.robots = objective, robots
+        self.weights = checked("weights", np.array(objective.weights), np.float64, (targets,))
+        self.prior = checked("prior", prior, np.float64, (targets, entries))
+        self.information = checked("information", information, np.float64, (robots, targets, entries))
+        self._before = np.zeros(targets)
+        arrays = map(address, (self.weights, self.prior, self.information, self._before))
+        self.record = TeamRecord(robots, targets, d, objective.compiled_code, *arrays, 0.0)
+        function("criteria_before", None, POINTER(TeamRecord), c_void_p)(self.record, address(self._before))
 
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
         """The plan's, or ``None`` if the loops do not have the objective."""
         if not has_loops(objective):
             return None
-        prior, information = triangles(objective.prior_information), triangles(objective.information[plan])
-        weights = np.array(objective.weights)
-        assert objective.compiled_code is not None
-        return cls(objective.compiled_code, objective.dimension, weights, prior, information)
+        return cls(objective, triangles(objective.prior_information), triangles(objective.information[plan]))
+
+    def among(self, robots: IntArray) -> Team:
+        """Some of the robots, in this order."""
+        return Team(self.objective, self.prior, np.ascontiguousarray(self.information[robots]))
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether targets have states of two dimensions, for which there are sharper bounds."""
+        return self.objective.dimension == PLANE
+
+    @property
+    def is_by_axis(self) -> bool:
+        """Whether a set is weak along one axis of one target, in the plane."""
+        return self.is_planar and self.objective.states("planar_levels")
 
     @property
     def whole_value(self) -> float:
         """Of all robots together."""
-        return self.value(np.ones(self.robots, dtype=np.bool_))
+        return self.value(range(self.robots))
 
-    def sums(self, chosen: BoolArray) -> FloatArray:
-        """(M, T) posterior information of the robots that are chosen (N,)."""
-        return np.ascontiguousarray(self._arrays[1] + self._arrays[2][chosen].sum(axis=0))
+    @cached_property
+    def single(self) -> FloatArray:
+        """(N,) individual values."""
+        return np.array([self.value([i]) for i in range(self.robots)])
 
-    def value(self, chosen: BoolArray) -> float:
-        """Of the robots that are chosen (N,)."""
-        sums = self.sums(chosen)
+    @property
+    def traces(self) -> FloatArray:
+        """(N, M) traces of the robots' information."""
+        d = self.objective.dimension
+        return np.asarray(self.information[..., [i * (i + 3) // 2 for i in range(d)]].sum(axis=-1))
+
+    def sums(self, robots: Iterable[int]) -> FloatArray:
+        """(M, T) posterior information of a set of robots."""
+        return np.ascontiguousarray(self.prior + self.information[sorted(robots)].sum(axis=0))
+
+    def value(self, robots: Iterable[int]) -> float:
+        """Of a set of robots."""
+        sums = self.sums(robots)
         return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
 
     def all_values(self) -> FloatArray:
@@ -115,7 +140,7 @@ class Team:
         """
         if self.robots > MOST_TABULATED:
             raise InputError("information", f"must be of at most {MOST_TABULATED} robots", self.robots)
-        values, sums = np.empty(2**self.robots), np.empty((self.robots + 1, *self._arrays[1].shape))
+        values, sums = np.empty(2**self.robots), np.empty((self.robots + 1, *self.prior.shape))
         call = function("all_values", None, POINTER(TeamRecord), c_void_p, c_void_p)
         call(self.record, address(values), address(sums))
         return values

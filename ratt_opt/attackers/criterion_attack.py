@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bound
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.size_vectors.possible_sizes import LARGEST, possible_sizes_bound, unprotected_bound
 from ratt_opt.attack.size_vectors.search import SizeVectorSearch
+from ratt_opt.attack.team import Team
 from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
@@ -205,8 +205,8 @@ class CriterionAttack(TeamAttack):
         return self.task.budget.stop() is None
 
     @cached_property
-    def _team(self) -> PackedTeam | None:
-        return PackedTeam.of(self._objective, self._plan)
+    def _team(self) -> Team | None:
+        return Team.of(self._objective, self._plan)
 
     @cached_property
     def _prices(self) -> ThresholdSearch | None:

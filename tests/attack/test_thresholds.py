@@ -218,23 +218,29 @@ def test_the_budget_is_asked_on_the_way(monkeypatch):
         SetsBelow(team).mark(1.0, Spent())
 
 
+def of_unit_matrices(dimension):
+    """A trace criterion of two targets."""
+    unit = np.broadcast_to(np.eye(dimension), (2, dimension, dimension))
+    return ro.TraceObjective(unit.copy(), unit[None].copy())
+
+
 def test_what_c_may_not_read_is_refused():
-    good = np.ones(2), np.ones((2, 3)), np.ones((4, 2, 3))
-    Team(0, 2, *good)
+    criterion, prior, information = of_unit_matrices(2), np.ones((2, 3)), np.ones((4, 2, 3))
+    Team(criterion, prior, information)
     bad = [
-        (np.ones(2, np.float32), good[1], good[2]),
-        (np.ones(3), good[1], good[2]),
-        (good[0], good[1], np.ones((4, 2, 6))[:, :, ::2]),
-        (good[0], np.ones((2, 4)), good[2]),
-        (good[0], good[1].tolist(), good[2]),
+        (prior.astype(np.float32), information),
+        (np.ones((3, 3)), information),
+        (prior, np.ones((4, 2, 6))[:, :, ::2]),
+        (np.ones((2, 4)), information),
+        (prior.tolist(), information),
     ]
     for arrays in bad:
         with pytest.raises(ro.InputError):
-            Team(0, 2, *arrays)
+            Team(criterion, *arrays)
     with pytest.raises(ro.InputError):
-        Team(0, 65, np.ones(2), np.ones((2, 2145)), np.ones((4, 2, 2145)))
+        Team(of_unit_matrices(65), np.ones((2, 2145)), np.ones((4, 2, 2145)))
     with pytest.raises(ro.InputError):
-        SetsBelow(Team(0, 2, good[0], good[1], np.ones((33, 2, 3))))
+        SetsBelow(Team(criterion, prior, np.ones((33, 2, 3))))
     for values in (np.ones(3), np.ones(4, np.float32), np.ones(8)[::2], np.empty(0)):
         with pytest.raises(ro.InputError):
             SetsBelow(values)
@@ -265,7 +271,7 @@ def test_the_example_of_the_page_of_the_engine():
 @pytest.mark.parametrize("robots", [0, 1])
 def test_the_smallest_teams(robots):
     information = np.ones((robots, 2, 3)) * np.array([1.0, 0.0, 1.0])
-    team = Team(0, 2, np.ones(2), np.ones((2, 3)) * np.array([1.0, 0.0, 1.0]), information)
+    team = Team(of_unit_matrices(2), np.ones((2, 3)) * np.array([1.0, 0.0, 1.0]), information)
     below = SetsBelow(team)
     assert below.mark(0.5, Budget())[1] == (None if robots == 0 else 1)
     assert below.sizes.tolist() == [1] + [1] * robots

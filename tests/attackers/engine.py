@@ -16,7 +16,6 @@ from ratt_opt.attack import all_sets
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search as set_search
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.size_vectors import decision as size_decision
@@ -82,8 +81,8 @@ class Once:
         return self._narrow(self.task)
 
 
-def _packed(task: AttackTask) -> PackedTeam | None:
-    return PackedTeam.of(task.problem.objective, task.values.plan)
+def _packed(task: AttackTask) -> Team | None:
+    return Team.of(task.problem.objective, task.values.plan)
 
 
 def _priced(task: AttackTask) -> ThresholdSearch:

@@ -81,7 +81,7 @@ class ThresholdDecision:
         self._choices: list[_Choice] = [self.prices.slackest, partial(self.prices.dearest, reserve=RESERVE)]
         for i in range(plan.robots):
             alone = np.arange(plan.robots) == i
-            self.prices.add([KnownGroup(robots=alone, need=0, value=float(plan.single[i]))])
+            self.prices.add([KnownGroup(robots=alone, need=0, value=float(plan.team.single[i]))])
             if not self._links.seeing[i]:
                 self.prices.add([KnownGroup(robots=alone, need=1, value=0.0)])
 
@@ -94,7 +94,7 @@ class ThresholdDecision:
         """Add the groups of an attack to the program."""
         for label in np.unique(partition.group):
             robots = partition.group == label
-            value = self._plan.team.value(robots & ~partition.blind)
+            value = self._plan.team.value(np.flatnonzero(robots & ~partition.blind))
             self.prices.add([KnownGroup(robots=robots, need=int((robots & partition.blind).sum()), value=value)])
 
     def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.attack.team import Team
 
 __all__ = ["descended", "exchanged", "weak_sets_of_size"]
 
@@ -41,7 +41,7 @@ BARRED, INSIDE, OUTSIDE = 0, 1, 2
 
 
 def exchanged(
-    team: PackedTeam,
+    team: Team,
     start: Iterable[int],
     *,
     among: Iterable[int] | None = None,
@@ -54,7 +54,7 @@ def exchanged(
     ``budget`` : once it is spent the set is left as it is
     """
     start, fixed = frozenset(start), frozenset(fixed)
-    where = np.full(len(team.single), OUTSIDE if among is None else BARRED, dtype=np.int8)
+    where = np.full(team.robots, OUTSIDE if among is None else BARRED, dtype=np.int8)
     where[list(among or ())] = OUTSIDE
     where[list(start)] = INSIDE
     where[list(fixed)] = BARRED
@@ -63,7 +63,7 @@ def exchanged(
     return kept.union(np.flatnonzero(where == INSIDE).tolist())
 
 
-def weak_sets_of_size(team: PackedTeam, size: int, budget: Budget | None = None) -> list[frozenset[int]]:
+def weak_sets_of_size(team: Team, size: int, budget: Budget | None = None) -> list[frozenset[int]]:
     """Sets of ``size`` robots that no exchange lowers, lowest value first; fewer, and rougher, once time is up.
 
     Deterministic. Starts: the robots of least individual value, those of least information about each target, and
@@ -85,7 +85,7 @@ def weak_sets_of_size(team: PackedTeam, size: int, budget: Budget | None = None)
     return sorted(found, key=found.__getitem__)
 
 
-def _starts(team: PackedTeam, size: int) -> Iterator[IntArray]:
+def _starts(team: Team, size: int) -> Iterator[IntArray]:
     yield np.argsort(team.single, kind="stable")[:size]
     traces = team.traces
     rng = np.random.default_rng(SEED)
@@ -96,20 +96,20 @@ def _starts(team: PackedTeam, size: int) -> Iterator[IntArray]:
         yield rng.permutation(len(traces))[:size]
 
 
-def _settle(team: PackedTeam, kept: FloatArray, where: Any, budget: Budget) -> None:
+def _settle(team: Team, kept: FloatArray, where: Any, budget: Budget) -> None:
     """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
     inside, outside = int((where == INSIDE).sum()), int((where == OUTSIDE).sum())
     steps = max(AT_ONCE // max(inside * outside * len(team.weights), 1), 1)
-    call, native = function("exchange_robots", c_int, POINTER(TeamRecord), *[c_void_p] * 2, c_int64), team.native()
+    call = function("exchange_robots", c_int, POINTER(TeamRecord), *[c_void_p] * 2, c_int64)
     sums = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape)
-    while not (finished := call(native.reference, address(sums), address(where), steps)):
+    while not (finished := call(team.reference, address(sums), address(where), steps)):
         if budget.is_over:
             return
     if finished < 0:
         raise MemoryError
 
 
-def descended(team: PackedTeam, start: IntArray) -> IntArray:
+def descended(team: Team, start: IntArray) -> IntArray:
     """Robots, as many as in ``start`` (K,) and worth no more; from the end of their descent."""
     chosen, value = start, team.value(start)
     while True:
@@ -120,7 +120,7 @@ def descended(team: PackedTeam, start: IntArray) -> IntArray:
         chosen, value = others, lower
 
 
-def _slopes(team: PackedTeam, sums: FloatArray) -> FloatArray:
+def _slopes(team: Team, sums: FloatArray) -> FloatArray:
     """(M, T) supergradient of the value in the entries of packed matrices, at posterior information (M, T)."""
     gradient = team.objective.gradient(from_triangles(sums))
     off_diagonal_twice = triangles(2 - np.eye(gradient.shape[-1]))

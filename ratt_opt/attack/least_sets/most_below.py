@@ -11,7 +11,7 @@ from ratt_opt.attack.least_sets.search import LeastSetSearch
 from ratt_opt.graph.communication import mask_of, robots_of
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
 __all__ = ["MostBelow"]
@@ -35,9 +35,9 @@ class MostBelow:
     protected robots of the set
     """
 
-    def __init__(self, team: PackedTeam, threshold: float, protected: int) -> None:
+    def __init__(self, team: Team, threshold: float, protected: int) -> None:
         self._team, self._threshold, self._protected = team, threshold, protected
-        self._robots = len(team.single)
+        self._robots = team.robots
         self._strongest = [int(i) for i in np.argsort(-team.single, kind="stable") if not protected >> int(i) & 1]
         self.limits: list[tuple[int, int]] = []
         self._below: list[int] = []

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import SetFamily
+    from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 
 __all__ = ["OuterPolytopes", "outer_polytopes", "target_values"]
 
@@ -37,9 +37,9 @@ SAFETY = 1e-9
 
 def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
     """Value of each target's information (..., M, 3) -> (..., M); minus infinity if it is not positive definite."""
-    flat, values, native = np.ascontiguousarray(matrices), np.empty(matrices.shape[:-1]), family.team.native()
+    flat, values = np.ascontiguousarray(matrices), np.empty(matrices.shape[:-1])
     call = function("planar_values_of_targets", None, POINTER(TeamRecord), c_int64, *[c_void_p] * 2)
-    call(native.reference, values.size // len(family.team.weights), address(flat), address(values))
+    call(family.team.reference, values.size // len(family.team.weights), address(flat), address(values))
     return values
 
 
@@ -71,10 +71,10 @@ def _cut_polytopes(
 
 def _vertex_values(family: SetFamily, starts: FloatArray, points: FloatArray, numbers: IntArray) -> FloatArray:
     """(V,) values of the information ``starts[j, p]`` (M, P, 3) plus each vertex of polytope ``(j, p)``."""
-    starts, values, native = np.ascontiguousarray(starts), np.empty(len(points)), family.team.native()
+    starts, values = np.ascontiguousarray(starts), np.empty(len(points))
     call = function("vertex_values", None, POINTER(TeamRecord), c_int64, *[c_void_p] * 4)
     arrays = starts, points, numbers, values
-    call(native.reference, starts.shape[1], *map(address, arrays))
+    call(family.team.reference, starts.shape[1], *map(address, arrays))
     return values
 
 

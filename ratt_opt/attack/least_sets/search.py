@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.least_sets.exchanges import exchanged
-from ratt_opt.attack.least_sets.sets_of_size import BoundedSets
+from ratt_opt.attack.least_sets.sets_of_size import BoundedSets, SetFamily
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.least_sets.underestimator import Underestimator
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
     Found = Generator[frozenset[int] | None, None, None]
@@ -57,7 +57,7 @@ class SetNode:
     underestimator: Underestimator | None = field(compare=False, default=None)
     is_bounded: bool = field(compare=False, default=False)
 
-    def undecided(self, team: PackedTeam) -> IntArray:
+    def undecided(self, team: Team) -> IntArray:
         """Robots neither inside nor outside, strongest first."""
         order = np.argsort(-team.single, kind="stable")
         return np.array([i for i in order.tolist() if i not in self.inside and i not in self.outside], dtype=np.int64)
@@ -115,7 +115,7 @@ class LeastSetSearch:
 
     def __init__(
         self,
-        team: PackedTeam,
+        team: Team,
         size: int,
         threshold: float,
         floor: float = -np.inf,
@@ -125,7 +125,6 @@ class LeastSetSearch:
         in_depth: int | None = None,
     ) -> None:
         self.team, self.size, self.threshold, self._in_depth = team, size, threshold, in_depth
-        self._native = team.native()
         self._inside, self._outside = inside, outside
         root = SetNode(floor, 0, inside, outside)
         self._open, left = [root], root.undecided(team)
@@ -162,7 +161,7 @@ class LeastSetSearch:
 
     def _search_whole(self, sets: BoundedSets, budget: Budget) -> Found:
         """Search in depth without bounds; to the end if there are none."""
-        most = next(nodes for robots, nodes in WHOLE if len(self.team.single) <= robots)
+        most = next(nodes for robots, nodes in WHOLE if self.team.robots <= robots)
         most = min(most, BY_AXIS) if self.team.is_by_axis else most
         most = most if self._in_depth is None else min(most, self._in_depth)
         while sets.nodes < most or not self.team.is_planar:
@@ -206,7 +205,7 @@ class LeastSetSearch:
 
     def _bounded(self, node: SetNode, robots: IntArray, size: int, budget: Budget) -> tuple[SetNode, IntArray]:
         """The node with its bound, and positions (size,) of robots whose set may come near it."""
-        family, first = self.team.family(robots, size, node.inside), np.arange(size)
+        family, first = SetFamily.of(self.team, robots, size, node.inside), np.arange(size)
         if self.team.is_by_axis:
             axis = weakest_axis(family)
             return replace(node, bound=max(node.bound, axis.bound), is_bounded=True), axis.chosen
@@ -223,11 +222,11 @@ class LeastSetSearch:
         """The sets of a node, among the undecided ``robots``."""
         size, underestimator = self.size - len(node.inside), node.underestimator
         scores = None if underestimator is None else (underestimator.constant, underestimator.scores)
-        return BoundedSets(self._native, robots, node.inside, size, self.threshold, scores)
+        return BoundedSets(self.team, robots, node.inside, size, self.threshold, scores)
 
     def _try(self, candidate: frozenset[int], budget: Budget) -> Found:
         """The set that a bound suggests, and as improved by exchanges."""
-        among = frozenset(range(len(self.team.single))) - self._outside
+        among = frozenset(range(self.team.robots)) - self._outside
         for one in (candidate, exchanged(self.team, candidate, among=among, fixed=self._inside, budget=budget)):
             if self.team.value(one) < self.threshold:
                 yield one

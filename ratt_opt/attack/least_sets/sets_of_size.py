@@ -6,6 +6,7 @@ A depth-first search in C (``native/src/sets_of_size.c``), which pauses and goes
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p, cast
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
@@ -22,11 +23,29 @@ if TYPE_CHECKING:
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
-__all__ = ["BoundedSets", "SetSearch"]
+__all__ = ["BoundedSets", "SetFamily", "SetSearch"]
 
 FINISHED, FOUND = 0, 2
 AT_ONCE = 10_000_000
 """Values of single targets between two looks at the clock: some hundredths of a second."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetFamily:
+    """All sets of ``size`` of F free robots, beside those already chosen.
+
+    ``start`` : (M, T) prior plus the chosen robots' information; ``information`` : (F, M, T)
+    """
+
+    team: Team
+    start: FloatArray
+    information: FloatArray
+    size: int
+
+    @classmethod
+    def of(cls, team: Team, robots: IntArray, size: int, chosen: Iterable[int] = ()) -> SetFamily:
+        """The sets of ``size`` of the ``robots`` (F,) beside those ``chosen``."""
+        return cls(team, team.sums(chosen), team.information[robots], size)
 
 
 class SetQuestionRecord(Structure):
@@ -65,7 +84,7 @@ class SetSearch:
         self._team, self._inside = team, np.zeros(team.robots, dtype=np.bool_) if inside is None else inside
         order = np.arange(team.robots) if among is None else np.ascontiguousarray(among, dtype=np.int64)
         spent = None if costs is None else checked("costs", costs, np.float64, (team.robots,))
-        self._arrays = team.sums(self._inside), order, spent
+        self._arrays = team.sums(np.flatnonzero(self._inside)), order, spent
         start, candidates, paid = (None if array is None else address(array) for array in self._arrays)
         reference = cast(byref(team.record), c_void_p)
         self._record = SetQuestionRecord(

@@ -23,7 +23,7 @@ from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import SetFamily
+    from ratt_opt.attack.least_sets.sets_of_size import SetFamily
     from ratt_opt.budget import Budget
 
 __all__ = ["Underestimator", "affine_underestimator"]

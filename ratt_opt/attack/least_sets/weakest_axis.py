@@ -17,7 +17,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import SetFamily
+    from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 
 __all__ = ["WeakestAxis", "weakest_axis"]
 
@@ -70,7 +70,7 @@ def weakest_axis(family: SetFamily) -> WeakestAxis:
     heights = linear[:, where[0]] @ _direction(np.array([where[1]]), 1.0)[0]
     chosen = np.argsort(heights, kind="stable")[:size]
     least = min(decided, best)  # of lambda_min / w; not positive where a corner left the cone
-    return WeakestAxis(team.baseline - 1 / (least * (1 - CLOSED)) if least > 0 else -np.inf, chosen)
+    return WeakestAxis(team.record.before_all - 1 / (least * (1 - CLOSED)) if least > 0 else -np.inf, chosen)
 
 
 def _harmonics(matrices: FloatArray) -> FloatArray:

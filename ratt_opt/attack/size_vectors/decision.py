@@ -22,7 +22,7 @@ from ratt_opt.attack.threshold_search import Answer, Threshold
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.graph.threat import Threat
@@ -55,7 +55,7 @@ class _Sets:
 class SizeDecision:
     """Decides thresholds for one plan."""
 
-    def __init__(self, team: PackedTeam, threat: Threat, vectors: Sequence[Sizes]) -> None:
+    def __init__(self, team: Team, threat: Threat, vectors: Sequence[Sizes]) -> None:
         self._team, self._threat, self._vectors = team, threat, vectors
         self._order = np.argsort(-team.single, kind="stable")
         self._smallest = min((vector[0] for vector in vectors if vector), default=0)
@@ -170,7 +170,7 @@ class Packing:
 class Packer:
     """Packs groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
 
-    team: PackedTeam
+    team: Team
     must: frozenset[int]
     budget: Budget
 
@@ -204,7 +204,7 @@ class Packer:
 
     def _search(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int) -> Packing:
         """Each set of the largest size, and the other groups from what it leaves."""
-        outside, decided = frozenset(range(len(self.team.single))) - available, True
+        outside, decided = frozenset(range(self.team.robots)) - available, True
         with self.budget.stage(max_nodes=effort) as part:
             others = replace(self, budget=part)
             for found in LeastSetSearch(self.team, sizes[0], threshold, outside=outside).run(part):

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
     MaskArray = NDArray[np.uint64]
@@ -71,7 +71,7 @@ class Filter:
         return cls(threshold, np.zeros(n_robots))
 
 
-def list_sets(team: PackedTeam, order: IntArray, size: int, wanted: Filter, budget: Budget) -> SetList | None:
+def list_sets(team: Team, order: IntArray, size: int, wanted: Filter, budget: Budget) -> SetList | None:
     """Every set of ``size`` robots that is wanted, or ``None`` if they are too many or too long to find.
 
     Parameters
@@ -99,9 +99,9 @@ def list_sets(team: PackedTeam, order: IntArray, size: int, wanted: Filter, budg
 class _Listing:
     """A search that goes on from where it ended."""
 
-    def __init__(self, team: PackedTeam, order: IntArray, size: int, wanted: Filter) -> None:
+    def __init__(self, team: Team, order: IntArray, size: int, wanted: Filter) -> None:
         costs = np.ascontiguousarray(wanted.costs, dtype=np.float64) if np.isfinite(wanted.room) else None
-        self._search = SetSearch(team.native(order), size, wanted.threshold, costs=costs, limit=wanted.room)
+        self._search = SetSearch(team.among(order), size, wanted.threshold, costs=costs, limit=wanted.room)
         self._size, self.count = size, 0
         self._masks, self._values = np.zeros(4096, np.uint64), np.zeros(4096)
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.size_vectors.disjoint_sets import SetList
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
 __all__ = ["FamilySearch", "SetLists"]
@@ -45,7 +45,7 @@ class SetLists:
     ``order`` : (F,) the robots, strongest first; bit ``k`` of a mask is ``order[k]``
     """
 
-    def __init__(self, team: PackedTeam, order: IntArray) -> None:
+    def __init__(self, team: Team, order: IntArray) -> None:
         self.team, self.order = team, order
         self.single: FloatArray = team.single[order]
         self._known: dict[int, SetList | None] = {}

@@ -28,8 +28,8 @@ from ratt_opt.graph.possible_sizes import PossibleSizes
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.task import AttackTask
+    from ratt_opt.attack.team import Team
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
@@ -50,7 +50,7 @@ VECTORS_SHARE, MOST_NODES = 0.3, 3_000_000
 _SetValues = list[tuple[float, frozenset[int]]]
 
 
-def unprotected_bound(task: AttackTask, team: PackedTeam) -> None:
+def unprotected_bound(task: AttackTask, team: Team) -> None:
     """Raise the lower bound to the worst case without protected links, no larger; keep its attack if allowed."""
     problem, bracket = task.problem, task.bracket
     relaxed = replace(problem, protected_links=frozenset())
@@ -63,7 +63,7 @@ def unprotected_bound(task: AttackTask, team: PackedTeam) -> None:
             task.offer(start.attack)
 
 
-def possible_sizes_bound(task: AttackTask, team: PackedTeam, least: int) -> int:
+def possible_sizes_bound(task: AttackTask, team: Team, least: int) -> int:
     """Raise the lower end to the least that groups of possible sizes leave, then by each set below the attack in hand.
 
     ``least`` : unblinded robots that are known to be left in some group. Returns the same, by sizes too.
@@ -85,7 +85,7 @@ def possible_sizes_bound(task: AttackTask, team: PackedTeam, least: int) -> int:
     return vectors[0][0]
 
 
-def _vectors_bound(task: AttackTask, team: PackedTeam, vectors: list[Sizes]) -> None:
+def _vectors_bound(task: AttackTask, team: Team, vectors: list[Sizes]) -> None:
     """Every attack leaves groups of unblinded robots of the sizes of a vector, or mergers of them."""
     problem, bracket = task.problem, task.bracket
     every_link = comb(problem.n_robots, 2)
@@ -95,7 +95,7 @@ def _vectors_bound(task: AttackTask, team: PackedTeam, vectors: list[Sizes]) -> 
 
 
 def _search(
-    task: AttackTask, team: PackedTeam, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
+    task: AttackTask, team: Team, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
 ) -> None:
     """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
     try:
@@ -104,7 +104,7 @@ def _search(
         task.bracket.raise_lower(min(start.lower, start.upper))
 
 
-def _sets_below(task: AttackTask, team: PackedTeam, possible: PossibleSizes) -> _SetValues | None:
+def _sets_below(task: AttackTask, team: Team, possible: PossibleSizes) -> _SetValues | None:
     """Every set below the goal of a size that a largest group may have, with its value; ``None`` if too many.
 
     If no set of a size is below the goal, no larger set is.
@@ -122,7 +122,7 @@ def _sets_below(task: AttackTask, team: PackedTeam, possible: PossibleSizes) -> 
     return sorted(sets, key=itemgetter(0))
 
 
-def _sets_bound(task: AttackTask, team: PackedTeam, possible: PossibleSizes) -> None:
+def _sets_bound(task: AttackTask, team: Team, possible: PossibleSizes) -> None:
     """Raise the lower end by asking of each set, weakest first, whether an attack can leave it as a largest group."""
     sets = _sets_below(task, team, possible)
     if sets is None:

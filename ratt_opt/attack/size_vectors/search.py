@@ -34,9 +34,9 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
     from ratt_opt.attack.task import AttackTask
+    from ratt_opt.attack.team import Team
     from ratt_opt.graph.survivor_sizes import Sizes
 
 __all__ = ["SizeVectorSearch"]
@@ -69,10 +69,10 @@ class SizeVectorSearch:
     ``vectors`` : size vectors to search; those that the budgets allow by default
     """
 
-    def __init__(self, task: AttackTask, team: PackedTeam, vectors: list[Sizes] | None = None) -> None:
+    def __init__(self, task: AttackTask, team: Team, vectors: list[Sizes] | None = None) -> None:
         self.task, self.team, self.bracket = task, team, task.bracket
         self.threat = task.problem.threat
-        n_robots, n_blinded, alpha_c = len(team.single), self.threat.n_blinded, self.threat.alpha_c
+        n_robots, n_blinded, alpha_c = team.robots, self.threat.n_blinded, self.threat.alpha_c
         self._given = vectors
         allowed = first_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else vectors
         self.vectors = list(allowed[: MOST_VECTORS + 1])
@@ -80,7 +80,7 @@ class SizeVectorSearch:
         self.weak = WeakFamilies(task, team)
         self.families: list[GroupExchanges] = []
         self._is_about_families = False
-        plan = Plan(team.native(), Links.of(self.threat), self.threat)
+        plan = Plan(team, Links.of(self.threat), self.threat)
         self._decision = SizeDecision(team, self.threat, self.vectors)
         self._sizes = ThresholdSearch(task, plan, self._decision, EFFORTS, anneals=vectors is None)
         self._prices = ThresholdSearch(task, plan, ThresholdDecision(plan))
@@ -114,7 +114,7 @@ class SizeVectorSearch:
     def has_small_groups(self) -> bool:
         """Several groups about alike, none need have more than an eighth of the team, nobody blinded, limit of time."""
         smallest = min(sizes[0] for sizes in self.vectors)
-        return self.is_about_families() and SMALL * smallest <= len(self.team.single) and not self.threat.n_blinded
+        return self.is_about_families() and SMALL * smallest <= self.team.robots and not self.threat.n_blinded
 
     # -- the stages ----------------------------------------------------------------------------------------------
 
@@ -132,7 +132,7 @@ class SizeVectorSearch:
 
     def weakest_of_forced_size(self) -> None:
         """Some group has the forced size at least, so the weakest set of that size is a bound."""
-        size = forced_group_size(len(self.team.single), self.threat.n_blinded, self.threat.alpha_c)
+        size = forced_group_size(self.team.robots, self.threat.n_blinded, self.threat.alpha_c)
         search = LeastSetSearch(self.team, size, self.bracket.goal, self.bracket.lower)
         for found in search.run(self.task.budget):
             if found is not None:
@@ -185,7 +185,7 @@ class SizeVectorSearch:
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""
-        n_robots, budgets = len(self.team.single), (self.threat.n_blinded, self.threat.alpha_c)
+        n_robots, budgets = self.team.robots, (self.threat.n_blinded, self.threat.alpha_c)
         vectors: list[Sizes] = []
         for first in range(forced_group_size(n_robots, *budgets), n_robots - budgets[0] + 1):
             vectors.extend(islice(sizes_of_largest(n_robots, *budgets, first), OF_EACH_SIZE))

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
 
     from ratt_opt._validation import BoolArray, IntArray
-    from ratt_opt.attack.least_sets.packed_team import PackedTeam
     from ratt_opt.attack.task import AttackTask
+    from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
     from ratt_opt.graph.survivor_sizes import Sizes
 
@@ -43,9 +43,9 @@ CLEARLY = 0.5
 class WeakFamilies:
     """Finds families that no exchange makes weaker."""
 
-    def __init__(self, task: AttackTask, team: PackedTeam) -> None:
+    def __init__(self, task: AttackTask, team: Team) -> None:
         self._team, self._budget = team, task.budget
-        self._must = np.isin(np.arange(len(team.single)), list(task.problem.threat.protected_robots))
+        self._must = np.isin(np.arange(team.robots), list(task.problem.threat.protected_robots))
         self._weak: dict[int, list[frozenset[int]]] = {}
 
     def exchanged(self, vectors: list[Sizes]) -> list[GroupExchanges]:
@@ -125,10 +125,10 @@ class GroupExchanges:
     must : (N,) robots that cannot be blinded
     """
 
-    def __init__(self, team: PackedTeam, sizes: Sizes, must: BoolArray) -> None:
+    def __init__(self, team: Team, sizes: Sizes, must: BoolArray) -> None:
         self._team, self._must, self.sizes = team, must, sizes
         self._rng = np.random.default_rng(SEED)
-        self._home: IntArray = np.zeros(len(team.single), dtype=np.int64)
+        self._home: IntArray = np.zeros(team.robots, dtype=np.int64)
         """(N,) group of each robot, 0 for those that are blinded, 1.. for the sizes in order."""
         self.value = np.inf
         """Of the best group."""
@@ -181,12 +181,12 @@ class GroupExchanges:
         call = function(
             "exchange_groups", c_int, POINTER(TeamRecord), c_int, *[c_void_p] * 2, c_double, c_int64, c_void_p
         )
-        native, must = self._team.native(), np.ascontiguousarray(self._must, dtype=np.bool_)
+        must = np.ascontiguousarray(self._must, dtype=np.bool_)
         home, value = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf)
         steps, finished = max(4 * AT_ONCE // (n_robots**2 * n_targets), 1), 0
         while not finished:
             places = address(home), address(must)
-            finished = call(native.reference, len(self.sizes), *places, SHARE, steps, byref(value))
+            finished = call(self._team.reference, len(self.sizes), *places, SHARE, steps, byref(value))
             if finished < 0:
                 raise MemoryError
             finished = finished or budget.is_over

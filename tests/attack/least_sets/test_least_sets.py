@@ -11,10 +11,11 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attack.least_sets import search as module
 from ratt_opt.attack.least_sets.exchanges import descended, exchanged, weak_sets_of_size
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attackers.engine import NO_LISTS
 from tests.strategies import OBJECTIVES, information_data, range_bearing
@@ -27,7 +28,7 @@ def test_bounds_lists_and_exchanges_of_sets_of_one_size(name, dimension):
     rng = np.random.default_rng(dimension)
     for _ in range(6):
         objective = OBJECTIVES[name](*information_data(rng, 9, 3, dimension), rng.uniform(0.2, 3, 3))
-        team, chosen = PackedTeam.of(objective, np.arange(9)), (2,)
+        team, chosen = Team.of(objective, np.arange(9)), (2,)
         assert team.single == pytest.approx(objective.singletons())
         assert team.traces == pytest.approx(np.trace(objective.information, axis1=-2, axis2=-1))
         others = [i for i in range(9) if i not in chosen]
@@ -54,8 +55,8 @@ def test_underestimators_lie_below_every_set(name, seed):
     data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 4)
     data[1][3] = data[1][2]
     data[1][4] = 0.0
-    team = PackedTeam.planar(OBJECTIVES[name](*data), np.arange(n_robots))
-    underestimator = affine_underestimator(team.family(np.arange(n_robots), size), 2, np.inf)
+    team = Team.of(OBJECTIVES[name](*data), np.arange(n_robots))
+    underestimator = affine_underestimator(SetFamily.of(team, np.arange(n_robots), size), 2, np.inf)
     slack = [
         team.value(chosen) - underestimator.constant - underestimator.scores[list(chosen)].sum()
         for chosen in combinations(range(n_robots), size)
@@ -73,8 +74,8 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
     rng = np.random.default_rng(seed)
     n_robots, size = 8, int(rng.integers(0, 9))
     data = range_bearing(rng, n_robots, 3, 1) if seed % 2 else information_data(rng, n_robots, 3)
-    team = PackedTeam.planar(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
-    axis = weakest_axis(team.family(np.arange(n_robots), size))
+    team = Team.of(ro.MaxEigenvalueObjective(*data, rng.uniform(0.5, 2, 3)), np.arange(n_robots))
+    axis = weakest_axis(SetFamily.of(team, np.arange(n_robots), size))
     weakest = min(team.value(chosen) for chosen in combinations(range(n_robots), size))
     assert axis.bound <= weakest + 1e-12
     assert axis.bound == pytest.approx(weakest, rel=1e-8, abs=1e-8)
@@ -84,7 +85,7 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
 def searched_in_pieces(name, n_robots, nodes, growth):
     """The search for some twenty weak sets of five robots, in budgets each so many times the last; how many it took."""
     objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), n_robots, 4, 1))
-    team = PackedTeam.planar(objective, np.arange(n_robots))
+    team = Team.of(objective, np.arange(n_robots))
     values = {frozenset(one): team.value(one) for one in combinations(range(n_robots), 5)}
     threshold = float(np.mean(sorted(values.values())[20:22]))
     search, found, runs = LeastSetSearch(team, 5, threshold), set(), 0
@@ -122,7 +123,7 @@ def test_no_exchange_lowers_a_weak_set(name, seed):
     rng = np.random.default_rng(seed)
     n_robots, size = 11, int(rng.integers(1, 11))
     data = range_bearing(rng, n_robots, 4, 1) if seed % 2 else information_data(rng, n_robots, 3)
-    team = PackedTeam.planar(OBJECTIVES[name](*data), np.arange(n_robots))
+    team = Team.of(OBJECTIVES[name](*data), np.arange(n_robots))
     found = weak_sets_of_size(team, size)
     values = [team.value(robots) for robots in found]
     assert values == sorted(values)
@@ -140,7 +141,7 @@ def test_no_exchange_lowers_a_weak_set(name, seed):
 @pytest.mark.parametrize("seed", range(8))
 def test_exchanges_keep_fixed_robots_and_stay_among_those_allowed(name, seed):
     rng = np.random.default_rng(seed)
-    team = PackedTeam.planar(OBJECTIVES[name](*range_bearing(rng, 12, 4, 1)), np.arange(12))
+    team = Team.of(OBJECTIVES[name](*range_bearing(rng, 12, 4, 1)), np.arange(12))
     among = frozenset(rng.permutation(12)[:9].tolist())
     start = frozenset(sorted(among)[:5])
     fixed = frozenset(sorted(start)[:2])
@@ -158,7 +159,7 @@ def test_exchanges_keep_fixed_robots_and_stay_among_those_allowed(name, seed):
 def test_linear_descent_ends_no_higher_and_where_no_step_leads_on(name, seed):
     rng = np.random.default_rng(seed)
     data = range_bearing(rng, 14, 4, 1) if seed % 2 else information_data(rng, 14, 3)
-    team = PackedTeam.planar(OBJECTIVES[name](*data), np.arange(14))
+    team = Team.of(OBJECTIVES[name](*data), np.arange(14))
     start = rng.permutation(14)[: int(rng.integers(1, 14))]
     found = descended(team, start)
     assert len(set(found.tolist())) == len(start)

@@ -7,7 +7,7 @@ import pytest
 
 from ratt_opt.attack.columns import Columns, Duals
 from ratt_opt.attack.least_sets.most_below import NONE, MostBelow
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
@@ -25,7 +25,7 @@ def asked(seed):
     members = (np.arange(2**ROBOTS)[:, None] >> np.arange(ROBOTS) & 1).astype(bool)
     values = np.array([problem.objective(plan[inside]) for inside in members])
     protected = int(rng.integers(2**ROBOTS) & rng.integers(2**ROBOTS)) if seed % 2 else 0
-    return PackedTeam.of(problem.objective, plan), values, float(np.quantile(values, rng.uniform(0.1, 0.9))), protected
+    return Team.of(problem.objective, plan), values, float(np.quantile(values, rng.uniform(0.1, 0.9))), protected
 
 
 def most(values, threshold, protected, group):

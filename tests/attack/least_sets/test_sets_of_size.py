@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.least_sets.sets_of_size import BoundedSets, SetSearch
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget
 from tests.strategies import OBJECTIVES, information_data
 
@@ -24,7 +24,7 @@ def drawn(name, seed):
         information[rng.integers(n_robots)] = 0.0
     if seed % 4 == 0:
         information[0] = information[-1]
-    team = PackedTeam.of(OBJECTIVES[name](prior, information), np.arange(n_robots))
+    team = Team.of(OBJECTIVES[name](prior, information), np.arange(n_robots))
     return rng, team, n_robots
 
 
@@ -53,7 +53,7 @@ def test_every_set_below_is_found_once(name, seed):
         )
         limit = np.inf if costs is None else float(np.median(list(paid.values())))
         search = SetSearch(
-            team.native(), size, threshold, among=among, inside=np.isin(np.arange(n_robots), inside), costs=costs,
+            team, size, threshold, among=among, inside=np.isin(np.arange(n_robots), inside), costs=costs,
             limit=limit, in_order=seed % 5 == 0,
         )  # fmt: skip
         found = found_by(search, int(rng.choice([1, 3, 10**6])))
@@ -71,7 +71,7 @@ def test_what_is_open_is_worth_what_is_said(name, seed):
     for size in range(2, n_robots + 1):
         values = {frozenset(one): team.value(one) for one in combinations(range(n_robots), size)}
         threshold = float(np.quantile(list(values.values()), rng.uniform(0.3, 1.0)))
-        search, found = SetSearch(team.native(), size, threshold), set()
+        search, found = SetSearch(team, size, threshold), set()
         while (one := search.next(1)) is not False:
             if one is not None:
                 found.add(frozenset(np.flatnonzero(one).tolist()))
@@ -90,7 +90,7 @@ def test_lists_hold_the_same_sets(name, seed):
     size = int(rng.integers(1, n_robots + 1))
     values = {sum(1 << i for i in one): team.value(one) for one in combinations(range(n_robots), size)}
     threshold = float(np.median(list(values.values()))) + 1e-6
-    search, masks, listed, count = SetSearch(team.native(), size, threshold), np.zeros(200, np.uint64), np.zeros(200), 0
+    search, masks, listed, count = SetSearch(team, size, threshold), np.zeros(200, np.uint64), np.zeros(200), 0
     finished = False
     while not finished:
         count, finished = search.fill(2, masks, listed, count)
@@ -110,7 +110,7 @@ def test_an_underestimator_leaves_out_no_set_below(seed):
     constant = min(value - scores[list(one)].sum() for one, value in values.items())
     threshold = float(np.median(list(values.values()))) + 1e-6
     order = rng.permutation(n_robots)
-    sets, found = BoundedSets(team.native(), order, (), size, threshold, (constant, scores[order])), set()
+    sets, found = BoundedSets(team, order, (), size, threshold, (constant, scores[order])), set()
     while (one := sets.next(threshold, 10**6, Budget())) is not False:
         if one is not None:
             found.add(one)

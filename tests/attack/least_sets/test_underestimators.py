@@ -10,9 +10,10 @@ import pytest
 from scipy.optimize import approx_fprime, linprog
 
 from ratt_opt.attack.least_sets.outer_polytopes import outer_polytopes
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
+from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 from ratt_opt.attack.least_sets.smoothed_dual import Multipliers, ProgramRecord
 from ratt_opt.attack.least_sets.underestimator import _program, affine_underestimator
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget
 from ratt_opt.native.library import function
 from tests.strategies import OBJECTIVES, range_bearing
@@ -20,9 +21,9 @@ from tests.strategies import OBJECTIVES, range_bearing
 
 def sensor_family(name, seed, n_robots=9, n_targets=4, size=None):
     rng = np.random.default_rng(seed)
-    team = PackedTeam.planar(OBJECTIVES[name](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
+    team = Team.of(OBJECTIVES[name](*range_bearing(rng, n_robots, n_targets, 1)), np.arange(n_robots))
     size = int(rng.integers(2, n_robots - 2)) if size is None else size
-    return team, team.family(np.arange(n_robots), size)
+    return team, SetFamily.of(team, np.arange(n_robots), size)
 
 
 def dual_program(family, n_heavy):
@@ -158,7 +159,7 @@ def test_a_restricted_minorant_and_its_child_hold_below_every_set_left(name, see
     it = np.arange(9) == robot
     others = np.flatnonzero(~it)
     for inside in (True, False):
-        smaller = team.family(others, 4 - inside, [robot] if inside else [])
+        smaller = SetFamily.of(team, others, 4 - inside, [robot] if inside else [])
         restricted = parent.restricted(~it, it if inside else np.zeros_like(it))
         child = affine_underestimator(smaller, 3, np.inf, restricted)
         for chosen in combinations(range(8), 4 - inside):

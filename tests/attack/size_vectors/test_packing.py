@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ratt_opt import Stop
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.size_vectors.decision import Packer
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.strategies import OBJECTIVES, information_data
 
@@ -28,7 +28,7 @@ def exists(team, available, sizes, threshold, must):
 
 def question(name, seed):
     rng = np.random.default_rng(seed)
-    team = PackedTeam.planar(OBJECTIVES[name](*information_data(rng, N_ROBOTS, 3)), np.arange(N_ROBOTS))
+    team = Team.of(OBJECTIVES[name](*information_data(rng, N_ROBOTS, 3)), np.arange(N_ROBOTS))
     robots = rng.permutation(N_ROBOTS).tolist()
     available = frozenset(robots[: int(rng.integers(4, N_ROBOTS + 1))])
     must = frozenset(i for i in robots if rng.random() < 0.2)

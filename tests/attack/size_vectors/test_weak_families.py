@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.size_vectors import weak_families
 from ratt_opt.attack.size_vectors.search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget
 
 
@@ -21,7 +21,7 @@ def test_large_teams_start_from_where_linear_descent_ends(name, monkeypatch):
     for seed in range(4):
         problem = ro.random_scenario(40, 12, alpha_s=4, alpha_c=40, seed=seed).problem(name)
         values = PlanValues(problem, ro.ratt(problem).elements)
-        team = PackedTeam.planar(problem.objective, values.plan)
+        team = Team.of(problem.objective, values.plan)
         task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=0))
         sizes = SizeVectorSearch(task, team).vectors[0]
         for large in found:
@@ -34,7 +34,7 @@ def test_exchanges_that_do_not_end_leave_time_for_bounds(monkeypatch):
     monkeypatch.setattr(weak_families, "function", lambda *_: lambda *_: 0)
     problem = ro.random_scenario(40, 4, alpha_s=4, alpha_c=40, seed=1).problem("logdet")
     values = PlanValues(problem, ro.ratt(problem).elements)
-    team = PackedTeam.planar(problem.objective, values.plan)
+    team = Team.of(problem.objective, values.plan)
     task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=2.0))
     search = SizeVectorSearch(task, team)
     assert search.weak.exchanged(search.vectors)

@@ -10,9 +10,9 @@ import numpy as np
 
 from ratt_opt.attack.annealing import AnnealedAttacks
 from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
 from ratt_opt.attack.task import AttackBracket, AttackMemory
+from ratt_opt.attack.team import Team, has_loops
 from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.budget import Budget, OutOfBudget, Stop
@@ -63,45 +63,51 @@ class LastingAttacks:
         return self._known[key]
 
     @cached_property
-    def _team(self) -> PackedTeam | None:
+    def _team(self) -> Team | None:
         return _at_their_best(self._problem)
+
+    @cached_property
+    def _single(self) -> FloatArray:
+        """(N,) values of the robots' individually best elements: these decide who is left alone.
+
+        With the information of ``_team`` instead, groups counted as weak that other elements make strong.
+        """
+        single = self._problem.objective.singletons()
+        return np.array([single[choice].max() for choice in self._problem.choices])
 
     def _weakest(self, largest: frozenset[int], sizes: tuple[int, ...], part: Budget) -> list[frozenset[int]] | None:
         """Disjoint groups of these sizes outside ``largest``, each as weak as exchanges find, the larger ones first.
 
         ``None`` if the part of the budget ends before: of a thousand robots there may be hundreds.
         """
-        team = self._team
-        assert team is not None
-        left = np.array([i for i in range(len(team.single)) if i not in largest])
+        assert self._team is not None
+        team, single = self._team, self._single
+        left = np.array([i for i in range(team.robots) if i not in largest])
         groups = []
         for size in sizes:
             if part.is_over:
                 return None
-            among = replace(team, information=team.information[left], single=team.single[left])
-            chosen = sorted(weak_sets_of_size(among, size, part)[0]) if size > 1 else [int(among.single.argmin())]
+            chosen = [int(single[left].argmin())]
+            if size > 1:
+                chosen = sorted(weak_sets_of_size(team.among(left), size, part)[0])
             groups.append(frozenset(left[chosen].tolist()))
             left = np.delete(left, chosen)
         return groups
 
 
-def _at_their_best(problem: Problem) -> PackedTeam | None:
+def _at_their_best(problem: Problem) -> Team | None:
     """A team in which each robot sees every target with the element that sees that target best.
 
-    No one element need do all of that; its ``single`` values are those of the robots' individually best elements. With
-    those elements' information instead, groups counted as weak that other elements make strong: what makes the best
-    lone robot need not help a group most.
+    No one element need do all of that. ``None`` if the loops do not have the objective.
     """
-    single = problem.objective.singletons()
-    strongest = np.array([choice[single[choice].argmax()] for choice in problem.choices])
-    team = PackedTeam.of(problem.objective, strongest)
-    if team is None:
+    objective = problem.objective
+    if not has_loops(objective):
         return None
-    information = problem.information_objective.information
+    information = objective.information
     traces = np.trace(information, axis1=-2, axis2=-1)
     best = np.array([choice[traces[choice].argmax(axis=0)] for choice in problem.choices])
     targets = np.arange(traces.shape[1])
-    return replace(team, information=triangles(information[best, targets]))
+    return Team(objective, triangles(objective.prior_information), triangles(information[best, targets]))
 
 
 SEARCHED_BY_SIZE = 12
@@ -176,7 +182,7 @@ class Adversary:
 
     def _learn_near(self, plan: IntArray) -> bool:
         """Exchange robots of known outcomes for a worse one: few descents if an attack takes hundreds."""
-        team = PackedTeam.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
+        team = Team.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
         if team is None or len(plan) <= SEARCHED_BY_SIZE:
             return False
         teams = self._known_values(self.problem, plan)

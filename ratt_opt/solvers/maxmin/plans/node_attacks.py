@@ -12,13 +12,12 @@ enter the pool, and what they prove is derived as for any other.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.packed_team import PackedTeam
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
+from ratt_opt.attack.team import Team
 from ratt_opt.graph.survivor_sizes import first_non_dominated_sizes
 from ratt_opt.setfunctions.information import triangles
 
@@ -44,7 +43,7 @@ SHAKEN, SHAKES = 2, 6
 class NodeAttacks:
     """Finds outcomes for nodes of one problem's search, as far as the budget lasts."""
 
-    def __init__(self, problem: Problem, pool: OutcomePool, team: PackedTeam, budget: Budget) -> None:
+    def __init__(self, problem: Problem, pool: OutcomePool, team: Team, budget: Budget) -> None:
         threat = problem.threat
         sizes = first_non_dominated_sizes(problem.n_robots, threat.n_blinded, threat.alpha_c)
         self._vectors = [one for one in sizes[:MOST_VECTORS] if len(one) > 1]
@@ -59,7 +58,7 @@ class NodeAttacks:
         """``None`` if robots or links differ to the adversary, all outcomes are known, or loops are not compiled."""
         if pool.complete or not problem.threat.is_symmetric:
             return None
-        team = PackedTeam.of(problem.objective, np.array([choice[0] for choice in problem.choices]))
+        team = Team.of(problem.objective, np.array([choice[0] for choice in problem.choices]))
         return None if team is None else cls(problem, pool, team, budget)
 
     def learn(self, choices: Choices, level: float) -> bool:
@@ -68,8 +67,7 @@ class NodeAttacks:
         for information in (self._best(choices), self._average(choices)):
             if not self._vectors or self._budget.is_over:
                 break
-            single = self._team.values(self._team.prior + information)
-            outcome, value = self._weakest(replace(self._team, information=information, single=single))
+            outcome, value = self._weakest(Team(self._team.objective, self._team.prior, information))
             if value < level:
                 self._pool.add_outcome(outcome)
         return len(self._pool) > known
@@ -81,7 +79,7 @@ class NodeAttacks:
         targets = np.arange(self._traces.shape[1])
         return np.array([self._information[choice[self._traces[choice].argmax(axis=0)], targets] for choice in choices])
 
-    def _weakest(self, team: PackedTeam) -> tuple[tuple[frozenset[int], ...], float]:
+    def _weakest(self, team: Team) -> tuple[tuple[frozenset[int], ...], float]:
         """The outcome found that leaves a team least, and what it leaves."""
         families = []
         for sizes in self._next_vectors():
