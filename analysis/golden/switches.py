@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
-from ratt_opt.attack.dual_prices.column_search import ColumnSearch, DualRepair
+from ratt_opt.attack.dual_prices.column_search import DualRepair
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search
-from ratt_opt.attack.pricing import Order
 from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
@@ -41,8 +40,6 @@ STAGE_NAMES = dict.fromkeys(
     stage.name for kind in ("criterion", "sizes") for stage in TABLES[kind] if stage.name not in NEEDED
 )
 BOUNDS: dict[str, Patches] = {
-    "pricing: who is inside first": ((ColumnSearch, "orders", (Order.SENSES,)),),
-    "pricing: who senses first": ((ColumnSearch, "orders", (Order.MEMBERS,)),),
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
     "dual repair": ((DualRepair, "fall", _gives(False)),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),

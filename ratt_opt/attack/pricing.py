@@ -1,17 +1,16 @@
 """Pricing: groups of small reduced cost that an attack may leave below a threshold, or the proof that no group is one.
 
 The reduced cost of a group is the links that leave it plus the dual price of each robot blinded in it, minus the dual
-prices of its robots. Branch and bound decides who senses first (:attr:`Order.SENSES`), or who is inside
-(:attr:`Order.MEMBERS`). At each node one Lagrangian bound is a flow: the links that leave a group are its cuts, and
-multipliers pay for what every group keeps: the most that its sensing robots weigh, as levels are concave
-(``native/src/levels.c``), the robots that can be blinded, and the links that one group may cut.
+prices of its robots. Branch and bound decides who is inside, then who must be blinded. At each node one Lagrangian
+bound is a flow: the links that leave a group are its cuts, and multipliers pay for what every group keeps: the most
+that its sensing robots weigh, as levels are concave (``native/src/levels.c``), the robots that can be blinded, and the
+links that one group may cut.
 """
 
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Literal
 
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["BLINDED", "UNIT", "Column", "DualPrices", "GroupSearch", "Order", "Plan", "Question"]
+__all__ = ["BLINDED", "UNIT", "Column", "DualPrices", "GroupSearch", "Plan", "Question"]
 
 UNIT = 1 << 20
 """Of duals, one link that leaves a group."""
@@ -42,13 +41,6 @@ BLINDED = 2
 """What a robot is to a group; 1 is sensing, 0 outside."""
 
 
-class Order(Enum):
-    """What branch and bound decides first."""
-
-    SENSES = "who senses"
-    MEMBERS = "who is inside"
-
-
 class QuestionRecord(Structure):
     """``Pricing`` of ``native/src/records.h``."""
 
@@ -57,7 +49,7 @@ class QuestionRecord(Structure):
         *((name, c_double) for name in ("threshold", "level")),
         *((name, c_int64) for name in ("n_blinded", "most_cut", "most")),
         *((name, c_void_p) for name in ("start", "robot", "back", "fixed", "seeing", "least_cut", "duals", "order")),
-        *((name, c_int64) for name in ("blinding", "unit", "limit", "by_senses", "effort")),
+        *((name, c_int64) for name in ("blinding", "unit", "limit", "effort")),
         *((name, c_void_p) for name in ("levels", "near", "filled")),
     ]
 
@@ -98,11 +90,11 @@ class Plan:
     def _asked(self, threshold: float, effort: int | None = None) -> GroupSearch:
         nothing = np.zeros(self.robots, dtype=np.int64)
         question = Question(threshold, self.robots, nothing, 0, 0, effort=effort)
-        return GroupSearch(self, question, Order.MEMBERS, nothing)
+        return GroupSearch(self, question, nothing)
 
     def annealed(self, question: Question, moves: int, warm: tuple[float, float], random: c_uint64) -> Iterator[Column]:
         """A group around each robot, annealed between two temperatures [links that leave a group]."""
-        best, record = np.zeros(self.robots, dtype=np.int8), self.record(question, Order.MEMBERS, question.duals)
+        best, record = np.zeros(self.robots, dtype=np.int8), self.record(question, question.duals)
         call = function(
             "anneal_column",
             c_int64,
@@ -119,7 +111,7 @@ class Plan:
             need = int((best == BLINDED).sum())
             yield Column(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
 
-    def record(self, question: Question, order: Order, robots: IntArray) -> QuestionRecord:
+    def record(self, question: Question, robots: IntArray) -> QuestionRecord:
         """As C reads it; everything it has the addresses of must be kept alive."""
         team, links, tables = cast(byref(self.team.record), c_void_p), self.links, self.tables
         arrays = (
@@ -145,7 +137,6 @@ class Plan:
             question.blinding,
             question.unit,
             question.limit,
-            order is Order.SENSES,
             question.effort or min(EFFORT, EFFORT_WORK // self.team.work + 1),
             *([None] * 3 if tables is None else map(address, tables)),
         )
@@ -209,12 +200,12 @@ class Column:
 class GroupSearch:
     """A search for the groups of one question, which may be gone on with, and whose duals may be lowered.
 
-    ``nodes`` : so far; ``first`` : (N,) robots, groups come by the first of theirs if it is asked who is inside
+    ``nodes`` : so far; ``first`` : (N,) robots; groups come by the first of theirs
     """
 
-    def __init__(self, plan: Plan, question: Question, order: Order, first: IntArray) -> None:
+    def __init__(self, plan: Plan, question: Question, first: IntArray) -> None:
         self._plan, self._duals, self._first = plan, question.duals.copy(), first
-        self._record = plan.record(replace(question, duals=self._duals), order, first)
+        self._record = plan.record(replace(question, duals=self._duals), first)
         self.handle = function("open_pricing", c_void_p, POINTER(QuestionRecord))(byref(self._record))
         if not self.handle:
             raise MemoryError

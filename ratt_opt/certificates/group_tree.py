@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ratt_opt.attack.pricing import GroupSearch, Order, Question
+from ratt_opt.attack.pricing import GroupSearch, Question
 from ratt_opt.certificates.plain_trees import PlainTrees
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell, tick
@@ -102,7 +102,7 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
     call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_void_p] * 2, *[c_int64] * 2)
     rows, depth = np.zeros((plan.robots + 1, 3), np.int32), np.full(1, -1, np.int32)
     effort, looked, code = CRITERIA // sets.objective.n_targets, 0, PAUSED
-    with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), Order.MEMBERS, nobody) as search:
+    with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody) as search:
         while code == PAUSED and looked < MOST_CRITERIA:
             tick()
             tell(COVERING, trees.record.count)
@@ -128,7 +128,7 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
     first = np.argsort(-question.duals, kind="stable").astype(np.int64)
     call = function("grow_group_tree", c_int, c_void_p, POINTER(TreeRecord), c_int64)
     record, code = trees.record, PAUSED
-    with GroupSearch(plan, question, Order.MEMBERS, first) as search:
+    with GroupSearch(plan, question, first) as search:
         while code == PAUSED:
             tick()
             tell(COVERING, record.count)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from ratt_opt.attack.dual_prices.program import KnownGroup
-from ratt_opt.attack.pricing import BLINDED, UNIT, Column, GroupSearch, Order, Question
+from ratt_opt.attack.pricing import BLINDED, UNIT, Column, GroupSearch, Question
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,10 +52,8 @@ T = TypeVar("T")
 
 HALF = 2 * UNIT
 """Dual prices are about half links: each link that is cut leaves two groups."""
-BEHIND = 2
-"""Of the nodes of the order that ended last, what the other one has: a half."""
-KEPT = 6
-"""Searches that may be gone on with: of three vectors of prices, both orders."""
+KEPT = 3
+"""Searches that may be gone on with: one for each choice of prices."""
 FIRST_CHUNK, GLANCE = 500, 0.02
 """Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
 
@@ -90,15 +88,12 @@ def question_of(prices: DualPrices, threshold: float, most: int, limit: float) -
 class ColumnSearch:
     """Searches for groups of one plan that pay.
 
-    Which order is short depends on the graph, the threshold and the prices, so both are tried, the one that ended last
-    first and furthest. If all of it was in vain and the same prices are asked again, both go on where they were.
+    If a search was in vain and the same prices are asked again, it goes on where it was.
     """
 
-    orders = tuple(Order)
-
     def __init__(self, plan: Plan) -> None:
-        self.plan, self._orders = plan, list(self.orders)
-        self._begun: dict[tuple[Order, float, int, int, bytes], GroupSearch] = {}
+        self.plan = plan
+        self._begun: dict[tuple[float, int, int, bytes], GroupSearch] = {}
 
     def find(self, question: Question, budget: Budget, falling: DualRepair, *, nodes: int, room: int) -> Columns:
         """Search for that many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
@@ -110,22 +105,10 @@ class ColumnSearch:
         ------
         OutOfBudget : the time is up.
         """
-        for order in tuple(self._orders):
-            work = nodes if order is self._orders[0] else nodes // BEHIND
-            found = self._search(order, question, budget, falling, (work, room))
-            if found.is_complete:
-                self._orders.sort(key=lambda other: other is not order)
-            if found.is_complete or found.groups:
-                break
-        return found
-
-    def _search(
-        self, order: Order, question: Question, budget: Budget, falling: DualRepair, most: tuple[int, int]
-    ) -> Columns:
-        (nodes, room), below = most, float(np.nextafter(question.threshold, -np.inf))
+        below = float(np.nextafter(question.threshold, -np.inf))
         question = replace(question, duals=np.minimum(question.duals, _duals(falling.prices)))
-        key = order, question.threshold, question.limit, question.blinding, question.duals.tobytes()
-        search = self._begun.pop(key, None) or GroupSearch(self.plan, question, order, _dearest_first(question))
+        key = question.threshold, question.limit, question.blinding, question.duals.tobytes()
+        search = self._begun.pop(key, None) or GroupSearch(self.plan, question, _dearest_first(question))
         pace, groups, fell = _Pace(search, nodes, budget), list[KnownGroup](), False
         while not pace.is_over and len(groups) < room:
             column = pace.ask(search.next)
@@ -155,7 +138,7 @@ class ColumnSearch:
         """
         robots, count, is_complete = self.plan.robots, 0, False
         table = np.zeros((room, robots), np.int8), np.zeros((room, 4), np.int64)
-        with GroupSearch(self.plan, question, Order.MEMBERS, _dearest_first(question)) as search:
+        with GroupSearch(self.plan, question, _dearest_first(question)) as search:
             pace = _Pace(search, nodes, budget)
             while not (pace.is_over or is_complete or count == room):
                 count, is_complete = pace.ask(lambda some: search.fill(some, table, count))  # noqa: B023

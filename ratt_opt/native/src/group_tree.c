@@ -121,7 +121,7 @@ static int64_t new_flow(Proof *p, Node *node) {
     for (int round = 0; round < ROUNDS; round++) {
         double bound = bound_of(s, node, at, room);
         int64_t never = (int64_t)1 << 52, link;
-        if (bound > best) best = bound, node->at = at, node->next = most_worth(s, node);
+        if (bound > best) best = bound, node->at = at;
         flow[0] = at.blinded > 0 ? (int64_t)(at.blinded * (double)s->q.unit) : 0, flow[1] = (int64_t)floor(at.cut * (double)s->q.unit);
         link = s->q.unit + flow[1];
         for (int64_t a = 0; a < p->arcs; a++) flow[2 + a] = (s->q.fixed[a] ? never : link) - s->capacity[a];
@@ -428,7 +428,7 @@ EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
         for (size_t i = 0; i < n; i++) node->state[i] = (int8_t)(SENSES | OUTSIDE | (s->q.seeing[i] ? 0 : BLINDED));
         memset(node->blind, 0, n);
         memcpy(node->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
-        node->need = node->low = 0, node->found = 1, node->most = (int)s->q.most, node->next = -1, node->cut = 0;
+        node->need = node->low = 0, node->found = 1, node->most = (int)s->q.most, node->cut = 0;
         node->at = (Multipliers){0.0, 0.0, 0.0};
         s->depth = 1;
     }

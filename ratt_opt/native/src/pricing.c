@@ -1,4 +1,4 @@
-/* Groups of negative reduced cost, by branch and bound: who is inside, or who senses, is decided first. */
+/* Groups of negative reduced cost, by branch and bound. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,13 +86,6 @@ static int bound_sizes(const Search *s, Node *node) {
     return node->low <= node->high && node->need <= s->q.n_blinded;
 }
 
-int most_worth(const Search *s, const Node *node) {
-    int best = -1;
-    for (int i = 0; i < s->robots; i++)
-        if (s->inside[i] && MAY_SENSE(node->state[i]) && (best < 0 || node->worth[i] > node->worth[best])) best = i;
-    return best;
-}
-
 /* Whether a group of the node may cost less than the limit; `fresh`: one more robot senses for sure. */
 static int may_pay(Search *s, Node *node, int fresh) {
     double room = weigh(s, node, fresh), best = -INFINITY;
@@ -100,7 +93,7 @@ static int may_pay(Search *s, Node *node, int fresh) {
     Multipliers at = node->at;
     for (int round = 0; round < ROUNDS; round++) {
         double bound = bound_of(s, node, at, room);
-        if (bound > best) best = bound, node->at = at, node->next = most_worth(s, node);
+        if (bound > best) best = bound, node->at = at;
         if (bound >= (double)s->q.limit) return 0;
         if (!improve(s, node, &at, room, bound)) break;
     }
@@ -187,7 +180,7 @@ static int record(const Search *s, const uint8_t *inside, const uint8_t *blind, 
 }
 
 /* Decide who is inside first, then who must be blinded: each group comes once. */
-static int by_members(Search *s, int8_t *group, int64_t *column) {
+static int step(Search *s, int8_t *group, int64_t *column) {
     if (s->depth == 0) {
         if (s->first == s->robots) return FINISHED;
         Node *node = begin(s);
@@ -214,50 +207,6 @@ static int by_members(Search *s, int8_t *group, int64_t *column) {
     int fresh = take_in(s, other, robot);
     node->state[robot] = OUTSIDE;
     int joins = admit(s, other, robot) && may_pay(s, other, fresh), stays = may_pay(s, node, 0);
-    keep(s, stays, joins);
-    return PAUSED;
-}
-
-/* Decide who senses first; who is blinded or outside is what a flow finds best, unless more are blinded than may be. */
-static int by_senses(Search *s, int8_t *group, int64_t *column) {
-    if (s->depth == 0) {
-        if (s->first) return FINISHED;
-        s->first = 1;
-        s->depth = may_pay(s, begin(s), 1);
-        return PAUSED;
-    }
-    if (split_sizes(s)) return PAUSED;
-    Node *node = s->nodes + s->depth - 1, *other = node + 1;
-    int robot = node->next;
-    if (robot < 0) { /* the cheapest group, if none of the others senses */
-        bound_of(s, node, (Multipliers){0.0, 0.0, 0.0}, 0.0);
-        robot = most_worth(s, node);
-    }
-    s->visited += 2;
-    copy_node(s, node, other);
-    if (robot >= 0) {
-        other->state[robot] = SENSES, node->state[robot] &= ~SENSES;
-        add_information(s->q.team, other->sums, 1.0, robot, other->sums);
-        int senses = may_pay(s, other, 1), not = may_pay(s, node, 0);
-        keep(s, not, senses);
-        return PAUSED;
-    }
-    int blinded = 0;
-    for (int i = 0; i < s->robots; i++) {
-        s->chosen[i] = s->inside[i] && node->state[i] != SENSES;
-        blinded += s->chosen[i];
-        if (s->chosen[i] && is_open(node->state[i])) robot = i;
-    }
-    if (record(s, s->inside, s->chosen, blinded, blinded, group, column)) return FOUND;
-    for (int i = 0; i < s->robots && robot < 0; i++)
-        if (is_open(node->state[i])) robot = i;
-    if (robot < 0 || column[3] >= s->q.limit) { /* no other costs less */
-        s->depth--;
-        return PAUSED;
-    }
-    int fresh = take_in(s, other, robot);
-    node->state[robot] = OUTSIDE;
-    int joins = may_pay(s, other, fresh), stays = may_pay(s, node, 0);
     keep(s, stays, joins);
     return PAUSED;
 }
@@ -305,7 +254,7 @@ EXPORTED Search *open_pricing(const Pricing *question) {
 EXPORTED int next_group_below(Search *s, int64_t nodes, int8_t *group, int64_t *column, int64_t *progress) {
     int code = PAUSED;
     int64_t stop = s->visited + nodes;
-    while (code == PAUSED && s->visited < stop) code = s->q.by_senses ? by_senses(s, group, column) : by_members(s, group, column);
+    while (code == PAUSED && s->visited < stop) code = step(s, group, column);
     *progress = s->visited;
     return code;
 }

@@ -22,12 +22,11 @@ typedef struct {
 /* An open node: groups with what each robot may be. */
 typedef struct {
     int8_t *state;        /* (robots) */
-    uint8_t *blind;       /* (robots) blinded robots that leave what is inside below the threshold, if `by_inside` */
+    uint8_t *blind;       /* (robots) blinded robots that leave what is inside below the threshold */
     double *sums, *worth; /* (targets, entries) of robots that sense for sure; (robots) value with one more of them */
     int need, found;      /* blinded robots: at least, and in `blind` */
     int most;             /* robots that sense, at most */
     int low, high;        /* robots inside */
-    int next;             /* may sense, inside the group at hand, and is worth most; -1 for none */
     int64_t cut;          /* links that leave a group of so many robots, at least */
     Multipliers at;
 } Node;
@@ -50,8 +49,6 @@ struct Search {
 double bound_of(Search *s, const Node *node, Multipliers at, double room);
 /* Better multipliers, by a subgradient step from a bound towards the limit; 0 where the group at hand keeps everything. */
 int improve(const Search *s, const Node *node, Multipliers *at, double room, double bound);
-/* The robot that may sense, inside the group at hand, that is worth most; -1 where there is none. */
-int most_worth(const Search *s, const Node *node);
 /* An open robot next to the group, with the most links to decided ones; -1 where there is none. */
 int next_to_group(const Search *s, const int8_t *state);
 void copy_node(const Search *s, const Node *from, Node *to);

@@ -127,7 +127,7 @@ typedef struct {
     const int64_t *least_cut;            /* (robots + 1) links that leave a group of so many robots, at least */
     int64_t *duals;                      /* (robots) may be lowered between two calls */
     const int64_t *order;                /* (robots) */
-    int64_t blinding, unit, limit, by_senses;
+    int64_t blinding, unit, limit;
     int64_t effort;                      /* robots valued to decide what a group needs */
     double *levels;                      /* (most of all + 1, robots, robots), or NULL: levels of copies of two robots */
     int32_t *near;                       /* the same; the other robots by level */
