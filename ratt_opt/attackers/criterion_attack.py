@@ -95,15 +95,11 @@ class CriterionAttack(TeamAttack):
 
     def may_list_columns_again(self) -> bool:
         """The same, limit of time."""
-        return self.may_list_columns() and self.prices_come_first()
+        return self.may_list_columns() and not isinf(self.task.budget.seconds_left) and self.has_prices()
 
     def has_prices(self) -> bool:
         """Criterion compiled, budget left."""
         return self._has_time_for_prices and self._prices is not None
-
-    def prices_come_first(self) -> bool:
-        """Criterion compiled, limit of time."""
-        return not isinf(self.task.budget.seconds_left) and self.has_prices()
 
     def may_have_sizes(self) -> bool:
         """Dense graph, at most 100 robots, packed team, not brief."""
@@ -188,10 +184,6 @@ class CriterionAttack(TeamAttack):
         """Dual prices of robots and links, by thresholds."""
         assert self._prices is not None
         return last_stage(self.task, self._prices)
-
-    def dual_prices_at_first(self) -> None:
-        """Dual prices of robots and links, by thresholds."""
-        self.dual_prices()
 
     # -- what is known -------------------------------------------------------------------------------------------
 

@@ -32,9 +32,6 @@ FIRST_BOUND_SHARE, FIRST_BOUND_NODES = 0.05, 20_000
 """The same at first on dense graphs, for the attack that comes with it: one of the starts of annealing is from there,
 which at 50 robots ends at the worst attack once, and the others 10 % above."""
 
-PRICES_SHARE = 0.5
-"""Of what is left for dual prices before the forced size."""
-
 ANNEALED_SHARE = 0.5
 """Of the seconds and values left for annealing by values alone; then all attacks are searched. Without it attacks on 24
 and 30 robots with a criterion of one's own were 0.6 to 6 % milder than the worst one after 5 s; with it 0 to 1 %."""
@@ -68,7 +65,6 @@ CRITERION: tuple[Stage[Criterion], ...] = (
     Stage("annealed attacks", Criterion.anneal, Criterion.has_prices),
     Stage("listed columns", Criterion.listed_columns, Criterion.may_list_columns_again, LISTED_SHARE, LISTED_NODES),
     Stage("possible sizes", Criterion.possible_sizes, Criterion.may_have_sizes, SIZES_SHARE),
-    Stage("dual prices", Criterion.dual_prices_at_first, Criterion.prices_come_first, PRICES_SHARE),
     Stage("forced size", Criterion.forced_size, Criterion.has_prices, BOUND_SHARE, BOUND_NODES),
     Stage("dual prices", Criterion.dual_prices, Criterion.has_prices),
 )
