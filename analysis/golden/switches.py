@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
-from ratt_opt.attack.dual_prices.column_search import DualRepair
 from ratt_opt.attack.dual_prices.decision import ThresholdDecision
 from ratt_opt.attack.least_sets import search
 from ratt_opt.attack.size_vectors import decision as size_decision
@@ -41,7 +40,6 @@ STAGE_NAMES = dict.fromkeys(
 )
 BOUNDS: dict[str, Patches] = {
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
-    "dual repair": ((DualRepair, "fall", _gives(False)),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
     "outer polytopes of several robots": ((search, "HEAVY_ROBOTS", ((10**9, 1),)),),
     "search of sets in depth": ((search, "WHOLE", ((10**9, 0),)), (search, "FEWEST", 1), (search, "MOST", 1)),

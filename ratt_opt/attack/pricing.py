@@ -198,14 +198,14 @@ class Column:
 
 
 class GroupSearch:
-    """A search for the groups of one question, which may be gone on with, and whose duals may be lowered.
+    """A search for the groups of one question, which may be gone on with.
 
     ``nodes`` : so far; ``first`` : (N,) robots; groups come by the first of theirs
     """
 
     def __init__(self, plan: Plan, question: Question, first: IntArray) -> None:
-        self._plan, self._duals, self._first = plan, question.duals.copy(), first
-        self._record = plan.record(replace(question, duals=self._duals), first)
+        self._plan, self._kept = plan, (question.duals, first)  # the record has their addresses only
+        self._record = plan.record(question, first)
         self.handle = function("open_pricing", c_void_p, POINTER(QuestionRecord))(byref(self._record))
         if not self.handle:
             raise MemoryError
@@ -228,7 +228,7 @@ class GroupSearch:
         self.close()
 
     def next(self, nodes: int) -> Column | Literal[False] | None:
-        """The next group; ``None`` after ``nodes`` nodes, ``False`` if there is none. Its node stays open."""
+        """The next group; ``None`` after ``nodes`` nodes, ``False`` if there is none."""
         group, column, progress = np.zeros(self._plan.robots, np.int8), np.zeros(4, np.int64), c_int64(0)
         call = function("next_group_below", c_int, c_void_p, c_int64, *[c_void_p] * 3)
         code = call(self.handle, nodes, address(group), address(column), byref(progress))
@@ -237,14 +237,6 @@ class GroupSearch:
             return False if code == FINISHED else None
         need, found, _, cost = column.tolist()
         return Column(robots=group > 0, blinded=group == BLINDED, need=need, found=found, cost=cost)
-
-    def leave(self) -> None:
-        """Close the node of the last group."""
-        function("leave_group", None, c_void_p)(self.handle)
-
-    def lower(self, duals: IntArray) -> None:
-        """Make the duals of robots no larger than these: what is closed stays closed."""
-        np.minimum(self._duals, duals, out=self._duals)
 
     def fill(self, nodes: int, listed: tuple[NDArray[np.int8], IntArray], count: int) -> tuple[int, bool]:
         """List groups from row ``count`` on for ``nodes`` nodes; the rows filled, and whether there are no others.

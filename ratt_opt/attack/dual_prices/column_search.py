@@ -1,13 +1,8 @@
-"""Columns of negative reduced cost, or the proof that no column has one: searches that may be gone on with.
-
-A proof takes one search, yet every search finds a few columns that annealing missed. So dual prices with a reserve are
-repaired: they are lowered for such a column while the search goes on. No reduced cost falls, so what is closed stays
-closed.
-"""
+"""Columns of negative reduced cost, or the proof that no column has one: searches that may be gone on with."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
@@ -20,32 +15,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attack.dual_prices.program import GroupPrices
     from ratt_opt.attack.pricing import DualPrices, Plan
     from ratt_opt.budget import Budget
 
-__all__ = ["ColumnSearch", "Columns", "DualRepair", "Listed", "question_of"]
-
-
-@dataclass(slots=True, kw_only=True)
-class DualRepair:
-    """``prices`` of the groups in ``program`` that claim at least ``links``; ``learned`` : groups that were new."""
-
-    program: GroupPrices
-    threshold: float
-    prices: DualPrices
-    links: float
-    learned: int = 0
-
-    def fall(self, group: KnownGroup, budget: Budget) -> bool:
-        """Learn a group that pays, and lower the prices so that it does not; false where too few links are left."""
-        fresh = self.program.add([group])
-        self.learned += fresh
-        lower = self.program.lowered(self.threshold, self.prices, budget.seconds_left) if fresh else None
-        if lower is None or lower.links < self.links:
-            return False
-        self.prices = lower
-        return True
+__all__ = ["ColumnSearch", "Columns", "Listed", "question_of"]
 
 
 T = TypeVar("T")
@@ -60,7 +33,7 @@ FIRST_CHUNK, GLANCE = 500, 0.02
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Columns:
-    """``groups`` that pay, though prices fell for others; ``is_complete`` : with none, there is no such column."""
+    """``groups`` of negative reduced cost; ``is_complete`` : there are no others."""
 
     groups: list[KnownGroup]
     is_complete: bool
@@ -95,35 +68,24 @@ class ColumnSearch:
         self.plan = plan
         self._begun: dict[tuple[float, int, int, bytes], GroupSearch] = {}
 
-    def find(self, question: Question, budget: Budget, falling: DualRepair, *, nodes: int, room: int) -> Columns:
+    def find(self, question: Question, budget: Budget, *, nodes: int, room: int) -> Columns:
         """Search for that many nodes, until ``room`` groups are found; counts its nodes in ``budget``.
-
-        ``falling`` : the prices of the question, which fall for groups that pay, as far as they can; the search goes on
-        for the groups left over.
 
         Raises
         ------
         OutOfBudget : the time is up.
         """
-        below = float(np.nextafter(question.threshold, -np.inf))
-        question = replace(question, duals=np.minimum(question.duals, _duals(falling.prices)))
+        below, groups = float(np.nextafter(question.threshold, -np.inf)), list[KnownGroup]()
         key = question.threshold, question.limit, question.blinding, question.duals.tobytes()
         search = self._begun.pop(key, None) or GroupSearch(self.plan, question, _dearest_first(question))
-        pace, groups, fell = _Pace(search, nodes, budget), list[KnownGroup](), False
+        pace = _Pace(search, nodes, budget)
         while not pace.is_over and len(groups) < room:
             column = pace.ask(search.next)
-            if column is None:
-                continue
             if column is False:
                 return Columns(groups=groups, is_complete=True)
-            group = KnownGroup(robots=column.robots, need=column.found, value=below)
-            if column.need == column.found and not groups and falling.fall(group, budget):
-                search.lower(_duals(falling.prices))
-                fell = True
-            else:
-                groups.append(group)
-                search.leave()
-        if not groups and not fell:
+            if column is not None:
+                groups.append(KnownGroup(robots=column.robots, need=column.found, value=below))
+        if not groups:
             self._begun[key] = search
             while len(self._begun) > KEPT:
                 del self._begun[next(iter(self._begun))]

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.annealing import Partition
-from ratt_opt.attack.dual_prices.column_search import ColumnSearch, DualRepair, question_of
+from ratt_opt.attack.dual_prices.column_search import ColumnSearch, question_of
 from ratt_opt.attack.dual_prices.program import GroupPrices, KnownGroup
 from ratt_opt.attack.exact_cover import ExactCover, packed
 from ratt_opt.attack.pricing import UNIT, DualPrices
@@ -47,9 +47,8 @@ RESERVE = 0.3
 """Share of the links that could be claimed beyond the budget that prices claim, too, to be lowered for groups that pay.
 Measured at hubs of 30 robots (10, 31) and 97 % of the attack: two searches instead of five, of 60,000 nodes."""
 
-LOWERED, FALL = 0.003, 0.1
-"""By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative; and links
-by which prices that claim too few may fall for groups before."""
+LOWERED = 0.003
+"""By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
 FIRST_ATTEMPT, LONGER = 10_000, 3
 """Nodes of the first search at each of a few prices, and their growth while none of them ends."""
@@ -153,19 +152,13 @@ class ThresholdDecision:
         threshold, size, limit = asked
         if self.prices.add(self._cheap(prices, threshold, size, budget)):
             return Answer(verdict=Threshold.REACHED)
-        least = self.threat.alpha_c + MARGIN
-        least = least if prices.links > least - TOLERANCE else prices.links - FALL
-        falling = DualRepair(program=self.prices, threshold=threshold, prices=prices, links=least)
         question = question_of(prices, threshold, size, limit)
-        found = self._search.find(question, budget, falling, nodes=self._attempt, room=NEW_GROUPS)
+        found = self._search.find(question, budget, nodes=self._attempt, room=NEW_GROUPS)
         if found.groups:
-            is_new = self.prices.add(found.groups) or falling.learned
-            return Answer(verdict=Threshold.REACHED if is_new else Threshold.OPEN)
-        if not found.is_complete or (
-            prices.links > self.threat.alpha_c and not self._is_too_much(falling.prices, question)
-        ):
+            return Answer(verdict=Threshold.REACHED if self.prices.add(found.groups) else Threshold.OPEN)
+        if not found.is_complete or (prices.links > self.threat.alpha_c and not self._is_too_much(prices, question)):
             return None
-        return Answer(verdict=Threshold.REFUTED, prices=falling.prices)
+        return Answer(verdict=Threshold.REFUTED, prices=prices)
 
     def _is_too_much(self, prices: DualPrices, question: Question) -> bool:
         """Whether prices that no group pays claim more links than the budget, as integers."""

@@ -121,10 +121,6 @@ class GroupPrices:
         claimed = float(x[:n_robots].sum()) - blinded * self._threat.n_blinded
         return DualPrices(robot=x[:n_robots], blinded=blinded, links=claimed) if claimed >= links - 1e-6 else None
 
-    def lowered(self, threshold: float, prices: DualPrices, seconds: float = np.inf) -> DualPrices | None:
-        """Best prices that known groups do not pay, for robots at most these; ``None`` if none are found."""
-        return self._with_blinded_at(threshold, prices.blinded, seconds, prices.robot)
-
     def dearest(
         self, threshold: float, links: float, seconds: float = np.inf, reserve: float = 0.0
     ) -> DualPrices | None:

@@ -248,19 +248,16 @@ EXPORTED Search *open_pricing(const Pricing *question) {
     return s;
 }
 
-/* Go on for so many nodes, or to the next group: 0 all are decided, 1 paused, 2 found. Its node stays open until it is left:
-   with lower duals the group may cost enough. `group` (robots): 0 outside, 1 sensing, 2 blinded; `column`: blinded robots at
+/* Go on for so many nodes, or to the next group: 0 all are decided, 1 paused, 2 found. `group` (robots): 0 outside, 1 sensing, 2 blinded; `column`: blinded robots at
    least and as found, links that leave it, reduced cost. `progress`: nodes so far. */
 EXPORTED int next_group_below(Search *s, int64_t nodes, int8_t *group, int64_t *column, int64_t *progress) {
     int code = PAUSED;
     int64_t stop = s->visited + nodes;
     while (code == PAUSED && s->visited < stop) code = step(s, group, column);
+    if (code == FOUND) s->depth--;
     *progress = s->visited;
     return code;
 }
-
-/* Close the node of the group that was found. */
-EXPORTED void leave_group(Search *s) { s->depth--; }
 
 /* The same, for a list: up to `room` groups, one after the other; their number is *count. */
 EXPORTED int list_groups_below(Search *s, int64_t nodes, int64_t room, int8_t *groups, int64_t *columns, int64_t *count, int64_t *progress) {
@@ -268,9 +265,7 @@ EXPORTED int list_groups_below(Search *s, int64_t nodes, int64_t room, int8_t *g
     int64_t stop = s->visited + nodes;
     while (code != FINISHED && s->visited < stop && *count < room) {
         code = next_group_below(s, stop - s->visited, groups + *count * s->robots, columns + 4 * *count, progress);
-        if (code != FOUND) continue;
-        leave_group(s);
-        ++*count;
+        *count += code == FOUND;
     }
     return code == FINISHED ? FINISHED : PAUSED;
 }

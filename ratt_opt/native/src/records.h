@@ -125,7 +125,7 @@ typedef struct {
     const int64_t *start, *robot, *back; /* (arcs) `back`: the same link's arc the other way */
     const uint8_t *fixed, *seeing;
     const int64_t *least_cut;            /* (robots + 1) links that leave a group of so many robots, at least */
-    int64_t *duals;                      /* (robots) may be lowered between two calls */
+    const int64_t *duals;                      /* (robots) */
     const int64_t *order;                /* (robots) */
     int64_t blinding, unit, limit;
     int64_t effort;                      /* robots valued to decide what a group needs */
