@@ -93,13 +93,12 @@ let objective = function
   | _ -> raise (Fault "the objective must be trace, logdet or maxeig")
 
 let problem value =
-  match
-    fields "problem"
-      [ "objective"; "dimension"; "prior"; "information"; "weights"; "owners"; "links"; "alpha_s"; "alpha_c";
-        "protected_robots"; "protected_links" ]
-      value
-  with
-  | [ kind; d; prior; information; weights; owners; pairs; blinded; cut; safe_robots; safe_links ] ->
+  let has_output = match value with Record pairs -> List.mem_assoc "output" pairs | _ -> false in
+  let given =
+    [ "objective"; "dimension"; "prior"; "information"; "weights"; "owners"; "links"; "alpha_s"; "alpha_c";
+      "protected_robots"; "protected_links" ] in
+  match fields "problem" (if has_output then given @ [ "output" ] else given) value with
+  | kind :: d :: prior :: information :: weights :: owners :: pairs :: blinded :: cut :: safe_robots :: safe_links :: part ->
       let kind = objective kind in
       let d = index "dimension" d in
       if d > 100 then format "dimension" "must be at most 100";
@@ -110,7 +109,9 @@ let problem value =
       let row value = List.map (exacts "information") (array "information" value) in
       let pb =
         { objective = kind; dimension = nat_of_int d; priors = List.map (exacts "prior") (array "prior" prior);
-          weights = exacts "weights" weights; informations = List.map row (array "information" information);
+          weights = exacts "weights" weights;
+          outputs = Option.map (fun all -> List.map (exacts "output") (array "output" all)) (List.nth_opt part 0);
+          informations = List.map row (array "information" information);
           net =
             { top_robot = nat_of_int top; owners = List.map nat_of_int owners; link_list = links "links" pairs;
               blind_budget = nat "alpha_s" blinded; cut_budget = nat "alpha_c" cut;
@@ -359,9 +360,15 @@ let exacts_of_length where length value =
   if List.length found <> length then format where (Printf.sprintf "must be a list of %d entries" length);
   found
 
-let point kind d value =
-  match (kind, value) with
-  | (Trace | LogDet), _ -> TracePoint (List.map (exacts_of_length "point Y" (d * (d + 1) / 2)) (array "point" value))
+let point pb value =
+  let d = int_of_nat pb.dimension in
+  match (pb.objective, value) with
+  | (Trace | LogDet), _ ->
+      (* As many entries as the output: [d] rows, with a column for each of its rows. *)
+      let lengths = match pb.outputs with Some parts -> List.map List.length parts | None -> List.map (fun _ -> d * (d + 1) / 2) pb.priors in
+      let given = array "point" value in
+      if List.length given <> List.length lengths then format "point" "must have a matrix for each target";
+      TracePoint (List.map2 (exacts_of_length "point Y") lengths given)
   | MaxEigenvalue, List [ target; size; direction ] ->
       EigenPoint (nat "point target" target, exact "point t" size, exacts_of_length "point v" d direction)
   | _ -> format "point" "must be a list of 3 entries"
@@ -396,7 +403,7 @@ let proofs pb size names prior_range upper lower =
         | (Trace | LogDet), [] -> (zero, zero)
         | MaxEigenvalue, [ low; high ] -> (low, high)
         | _ -> format "prior_eigenvalue" "must be a list of two entries, of none but for maxeig" in
-      { prior_low = low; prior_high = high; listed; points = List.map (point pb.objective (int_of_nat pb.dimension)) (array "points" points);
+      { prior_low = low; prior_high = high; listed; points = List.map (point pb) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
         cover_list = List.concat_map (fun found -> List.map (cover size) (array "covers" found)) covers;
         upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node names groups named left next 0);

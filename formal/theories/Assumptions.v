@@ -28,10 +28,14 @@ Print Assumptions one_minus_c_squared_approached.
 Print Assumptions trace_fenchel.
 Print Assumptions trace_fenchel_tight.
 Print Assumptions largest_eigenvalue_fenchel.
+Print Assumptions largest_eigenvalue_below.
 Print Assumptions trace_value0.
 Print Assumptions trace_value_mono.
 Print Assumptions maxeig_value0.
 Print Assumptions maxeig_value_mono.
+Print Assumptions trace_value_whole.
+Print Assumptions maxeig_value_whole.
+Print Assumptions output_of_whole.
 Print Assumptions logdet_fenchel.
 Print Assumptions logdet_fenchel_tight.
 Print Assumptions logdet_value0.
@@ -59,6 +63,7 @@ Print Assumptions safe_exact.
 Print Assumptions safe_groups.
 Print Assumptions split_exact.
 Print Assumptions split_groups.
+Print Assumptions part_exact.
 Print Assumptions n_max_values.
 Print Assumptions ties_ratt.
 Print Assumptions pairs_ratt.

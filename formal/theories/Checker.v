@@ -1,7 +1,7 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix DyadicLog Graph Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Outputs Graph Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -9,18 +9,21 @@ Unset Printing Implicit Defensive.
 (** ** Data *)
 Inductive criterion := Trace | LogDet | MaxEigenvalue.
 
-(** Symmetric matrices are lower triangles, row by row. [informations]: by element, then by target. *)
+(** Symmetric matrices are lower triangles, row by row. [outputs]: the part of each target's state that counts, if not all
+    of it does. [informations]: by element, then by target. *)
 Record problem := Problem {
   objective : criterion;
   dimension : nat;
   priors : seq (seq dyadic);
   weights : seq dyadic;
+  outputs : outputs_data;
   informations : seq (seq (seq dyadic));
   net : network
 }.
 Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
 
-(** Where a linear bound touches: one symmetric matrix per target (trace, log-det), or a target, a length and a direction. *)
+(** Where a linear bound touches: one matrix per target (trace, log-det), or a target, a length and a direction. Matrices
+    are symmetric, but with outputs: then they have a column for each row of the output, and are listed whole. *)
 Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
 (** Version 1: a size tree, an attack tree. Version 2: the sets alone, dual prices, a cover, sizes of groups. *)
 Inductive lower_proof :=
@@ -93,10 +96,10 @@ Definition weight_groups (ws : seq dyadic) : seq (dyadic * seq nat) :=
 Definition precisions : seq (nat * N) := [:: (24, 96%num); (44, 160%num); (110, 1024%num)].
 
 Section Penalty.
-Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (groups : seq (dyadic * seq nat)).
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (Ss : seq (option dmat)) (groups : seq (dyadic * seq nat)).
 
 Definition trace_up (p : N) (s : seq dmat) : option dyadic :=
-  if all_some [seq trace_inverse_up p d (nth [::] s j) | j <- iota 0 m] is Some ys then
+  if all_some [seq trace_inverse_up p d (nth None Ss j) (nth [::] s j) | j <- iota 0 m] is Some ys then
     Some (dsum [seq dmul (nth d0 ws j) (nth d0 ys j) | j <- iota 0 m])
   else None.
 Definition determinant_products (p : N) (s : seq dmat) : seq (dyadic * dyadic) :=
@@ -112,7 +115,7 @@ Definition logdet_up (k : nat) (p : N) (s : seq dmat) : option dyadic :=
 Definition is_at_most (x : option dyadic) (y : dyadic) : bool := if x is Some z then dle z y else false.
 Definition eigen_enough (room : dyadic) (s : seq dmat) : bool :=
   dlt d0 room && all (fun j => is_pd d (nth [::] s j) &&
-    is_psd d (msub d (mscale d room (nth [::] s j)) (mscalar d (nth d0 ws j)))) (iota 0 m).
+    is_psd d (msub d (mscale d room (nth [::] s j)) (weighted_square d (nth d0 ws j) (nth None Ss j)))) (iota 0 m).
 
 (** Hint for two rows: [w / lambda_min], a little more. *)
 Definition eigen_hint (p : N) (w : dyadic) (A : dmat) : dyadic :=
@@ -121,7 +124,7 @@ Definition eigen_hint (p : N) (w : dyadic) (A : dmat) : dyadic :=
   let disc := dsub (dmul t t) (dmul (dnat 4) det) in
   quotient_up p (dmul w (dadd t (root_up p disc))) (dmul (dnat 2) det).
 Definition eigen_up (p : N) (room : dyadic) (s : seq dmat) : option dyadic :=
-  let y := if d == 2%N then
+  let y := if (d == 2%N) && nilp Ss then
       foldl dmax d0 [seq eigen_hint p (nth d0 ws j) (nth [::] s j) | j <- iota 0 m]
     else room in
   if eigen_enough y s then Some y else None.
@@ -141,7 +144,7 @@ End Penalty.
 
 (** ** The lower end *)
 Section Lower.
-Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (groups : seq (dyadic * seq nat)).
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (Ss : seq (option dmat)) (groups : seq (dyadic * seq nat)).
 Variables (lows : seq dmat) (rows : seq (seq dmat)).
 Variables (claimed room : dyadic).
 
@@ -153,9 +156,9 @@ Definition add_times (r : nat) (s : seq dmat) (i : nat) : seq dmat :=
 (** A claim of at most 0 needs no more than the prior's information. *)
 Definition as_good_as_prior (s : seq dmat) : bool :=
   dle claimed d0 && all (fun j => is_psd d (msub d (nth [::] s j) (nth [::] lows j))) (iota 0 m).
-Definition worth (s : seq dmat) : bool := as_good_as_prior s || penalty_within kind d m ws groups room s.
+Definition worth (s : seq dmat) : bool := as_good_as_prior s || penalty_within kind d m ws Ss groups room s.
 Definition average_within (cases : seq (seq dmat)) (r : nat) (e : nat * N) : bool :=
-  if all_some [seq penalty_up kind d m ws groups room c e | c <- cases] is Some ys then
+  if all_some [seq penalty_up kind d m ws Ss groups room c e | c <- cases] is Some ys then
     let t := nth d0 (sort (fun x y => dle y x) ys) r.-1 in
     dle (dadd (dsum [seq dmax d0 (dsub y t) | y <- ys]) (dmul (dnat r) t)) (dmul (dnat r) room)
   else false.
@@ -167,7 +170,8 @@ End Lower.
 
 (** ** The upper end's linear bounds *)
 Section Cuts.
-Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (ps highs : seq dmat) (infos : seq (seq dmat)).
+Variables (kind : criterion) (d m : nat) (ws : seq dyadic) (o : outputs_data) (Ss : seq (option dmat)).
+Variables (ps highs : seq dmat) (infos : seq (seq dmat)).
 Variables (base_high : dyadic).
 
 (** A weight matrix per target ([::] for none) and a constant. *)
@@ -177,10 +181,10 @@ Definition gradient (pt : point) : option (seq dmat * dyadic) :=
   match kind, pt with
   | Trace, TracePoint ys =>
       if size ys == m then
-        let Ys := [seq unpack d y | y <- ys] in
-        let Ws := mkseq (fun j => mscale d (nth d0 ws j) (mmul d (nth [::] Ys j) (nth [::] Ys j))) m in
-        let c := dsum [seq dmul (nth d0 ws j) (dsub (mtrace d (nth [::] ps j))
-                   (dmul (dnat 2) (mtrace d (nth [::] Ys j)))) | j <- iota 0 m] in
+        let Ys := mkseq (fun j => touching d o j (nth [::] ys j)) m in
+        let Ws := mkseq (fun j => mscale d (nth d0 ws j) (outer_product d (output_rows d o j) (nth [::] Ys j))) m in
+        let c := dsum [seq dmul (nth d0 ws j) (dsub (trace_with d (nth None Ss j) (nth [::] ps j))
+                   (dmul (dnat 2) (touching_trace d o j (nth [::] Ys j)))) | j <- iota 0 m] in
         Some (Ws, dadd c (dots Ws highs))
       else None
   | LogDet, TracePoint ys =>
@@ -192,7 +196,7 @@ Definition gradient (pt : point) : option (seq dmat * dyadic) :=
         Some (Ws, dadd c (dots Ws highs))
       else None
   | MaxEigenvalue, EigenPoint j t v =>
-      let s := dsum [seq dmul (nth d0 v i) (nth d0 v i) | i <- iota 0 d] in
+      let s := length_of d (nth None Ss j) v in
       let b := quotient_up 256 (dmul t t) s in
       if [&& (j < m)%N, dlt d0 s & dle (dmul t t) (dmul b s)] then
         let W := mkm d (fun i k => dmul (dmul (nth d0 ws j) b) (dmul (nth d0 v i) (nth d0 v k))) in
@@ -268,7 +272,8 @@ Definition info_matrices : seq (seq dmat) := [seq [seq unpack (dimension pb) x |
 Definition shapes_ok : bool :=
   let k := ((d * d.+1)./2)%N in
   [&& (0 < d)%N, (0 < m)%N, all (fun x => size x == k) (priors pb), size ws == m, all (fun x => dlt d0 x) ws,
-      size (informations pb) == size (owners w)
+      size (informations pb) == size (owners w), outputs_ok d (outputs pb) m,
+      (if objective pb is LogDet then ~~ isSome (outputs pb) else true)
     & all (fun row => (size row == m) && all (fun x => size x == k) row) (informations pb)].
 Definition plan_ok : bool :=
   [&& size (plan cl) == robots w, all (fun e => e < size (owners w))%N (plan cl)
@@ -281,15 +286,22 @@ Definition worst_defect (defects : seq (seq dyadic)) (j : nat) : dyadic :=
 Definition room_ok (lows : seq dmat) (defects : seq (seq dyadic)) : bool :=
   all (fun j => is_pd d (msub d (nth [::] lows j)
     (mscalar d (dmul (dnat (robots w).+1) (worst_defect defects j))))) (iota 0 m).
+(** The covariances of what counts, at first. *)
 Definition prior_range_ok : bool :=
+  let rows := output_rows d (outputs pb) in
+  let covariances := mkseq (fun j => covariance d (outputs pb) j (nth [::] prior_matrices j)) m in
   match objective pb with
   | Trace | LogDet => true
   | MaxEigenvalue =>
-      all (fun j => is_psd d (msub d (mscalar d (prior_high pr)) (mscale d (nth d0 ws j) (nth [::] prior_matrices j)))) (iota 0 m)
-      && has (fun j => ~~ is_pd d (msub d (mscalar d (prior_low pr)) (mscale d (nth d0 ws j) (nth [::] prior_matrices j))))
-           (iota 0 m)
+      all (fun j => let q := rows j in
+          is_psd q (msub q (mscalar q (prior_high pr)) (mscale q (nth d0 ws j) (nth [::] covariances j)))) (iota 0 m)
+      && has (fun j => let q := rows j in
+          ~~ is_pd q (msub q (mscalar q (prior_low pr)) (mscale q (nth d0 ws j) (nth [::] covariances j)))) (iota 0 m)
   end.
-Definition trace_total : dyadic := dsum [seq dmul (nth d0 ws j) (mtrace d (nth [::] prior_matrices j)) | j <- iota 0 m].
+Definition output_squares : seq (option dmat) := squares (dimension pb) (outputs pb).
+Definition trace_total : dyadic :=
+  let Ss := output_squares in
+  dsum [seq dmul (nth d0 ws j) (trace_with d (nth None Ss j) (nth [::] prior_matrices j)) | j <- iota 0 m].
 Definition logdet_total_low : dyadic :=
   dopp (dsum [seq dmul (nth d0 ws j) (log_quotient_up 110 400 d1 (mdet d (nth [::] prior_matrices j))) | j <- iota 0 m]).
 Definition base_low : dyadic :=
@@ -302,8 +314,9 @@ Definition check_lower_part (lows : seq dmat) (defects : seq (seq dyadic)) : boo
   let start := mkseq (fun j => msub d (nth [::] lows j) (mscalar d (loss j))) m in
   let add := add_robot d m rows in
   let groups := weight_groups ws in
-  let good := worth (objective pb) d m ws groups lows (lower cl) room in
-  let average := average_worth (objective pb) d m ws groups lows rows (lower cl) room in
+  let Ss := output_squares in
+  let good := worth (objective pb) d m ws Ss groups lows (lower cl) room in
+  let average := average_worth (objective pb) d m ws Ss groups lows rows (lower cl) room in
   match lower_part pr with
   | ForcedSize k t => [&& complete w, is_forced w k & check_sizes w add good average k t start [::] 0]
   | AttackTree t =>
@@ -339,7 +352,8 @@ Definition gains_are_used : bool := if objective pb is LogDet then has_gains (up
 
 Definition check_upper_part (highs : seq dmat) (defects : seq (seq dyadic)) : bool :=
   let groups := [seq seeing_groups w a | a <- listed pr] in
-  let grads := [seq gradient (objective pb) d m ws prior_matrices highs (prior_high pr) pt | pt <- points pr] in
+  let Ss := output_squares in let ps := prior_matrices in
+  let grads := [seq gradient (objective pb) d m ws (outputs pb) Ss ps highs (prior_high pr) pt | pt <- points pr] in
   if all_some grads is Some gs then
     let pts := [seq point_scores d info_matrices g | g <- gs] in
     let cuts := cut_bounds (owners w) groups pts (cut_list pr) in

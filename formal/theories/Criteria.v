@@ -1,5 +1,5 @@
-(** The trace and the largest-eigenvalue criterion over an ordered field: normalised, non-decreasing, and how their
-    penalties behave. *)
+(** The trace and the largest-eigenvalue criterion over an ordered field, of states or of a part of each: normalised,
+    non-decreasing, and how their penalties behave. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
 From Ratt Require Import Extrema Teams Guarantees Quadratic.
@@ -26,6 +26,9 @@ Proof.
 move=> j1 h; rewrite /largest; case: pickP => [j0 _|/(_ j1)//].
 by apply: bigmax_le.
 Qed.
+
+Lemma eq_largest f g : f =1 g -> largest f = largest g.
+Proof. by move=> h; rewrite /largest; case: pickP => // j _; rewrite h; apply: eq_bigr => i _. Qed.
 End Largest.
 
 Section Convex.
@@ -72,19 +75,24 @@ End Convex.
 Section Criteria.
 Variables (F : realFieldType) (d : nat) (T E : finType).
 Variables (prior : T -> 'M[F]_d) (info : E -> T -> 'M[F]_d) (weight : T -> F).
+(** What counts of target [j] is [C_j x_j]; where all of the state does, [C_j] is the identity. *)
+Variables (rows : T -> nat) (output : forall j, 'M[F]_(rows j, d)).
 
 (** Information about target [j] after the measurements of a set of elements. *)
 Definition posterior (S : {set E}) (j : T) : 'M[F]_d := invmx (prior j) + \sum_(e in S) info e j.
 
-Definition trace_penalty (L : T -> 'M[F]_d) : F := \sum_j weight j * \tr (invmx (L j)).
-Definition trace_base : F := \sum_j weight j * \tr (prior j).
-(** [phi(S) = sum_j w_j (tr P_j - tr L_j(S)^-1)]. *)
+(** The covariance [C_j A C_j'] of what counts, where that of the state is [A]. *)
+Definition counting (j : T) (A : 'M[F]_d) : 'M[F]_(rows j) := part_of (output j) A.
+
+Definition trace_penalty (L : T -> 'M[F]_d) : F := \sum_j weight j * \tr (counting j (invmx (L j))).
+Definition trace_base : F := \sum_j weight j * \tr (counting j (prior j)).
+(** [phi(S) = sum_j w_j (tr C_j P_j C_j' - tr C_j L_j(S)^-1 C_j')]. *)
 Definition trace_value (S : {set E}) : F := trace_base - trace_penalty (posterior S).
 
-Variable lmax : 'M[F]_d -> F.
-Definition maxeig_penalty (L : T -> 'M[F]_d) : F := largest (fun j => weight j * lmax (invmx (L j))).
-Definition maxeig_base : F := largest (fun j => weight j * lmax (prior j)).
-(** [phi(S) = max_j w_j lambda_max(P_j) - max_j w_j lambda_max(L_j(S)^-1)]. *)
+Variable lmax : forall n, 'M[F]_n -> F.
+Definition maxeig_penalty (L : T -> 'M[F]_d) : F := largest (fun j => weight j * lmax (counting j (invmx (L j)))).
+Definition maxeig_base : F := largest (fun j => weight j * lmax (counting j (prior j))).
+(** [phi(S) = max_j w_j lambda_max(C_j P_j C_j') - max_j w_j lambda_max(C_j L_j(S)^-1 C_j')]. *)
 Definition maxeig_value (S : {set E}) : F := maxeig_base - maxeig_penalty (posterior S).
 
 Hypothesis weight_ge0 : forall j, 0 <= weight j.
@@ -119,17 +127,19 @@ Lemma trace_penalty_convex (I : eqType) (s : seq I) (A : I -> T -> 'M[F]_d) : s 
 Proof.
 move=> s0 h; rewrite /trace_penalty exchange_big mulr_sumr; apply: ler_sum => j _ /=.
 rewrite -mulr_sumr mulrCA; apply: ler_wpmul2l => //; rewrite trace_form.
-rewrite (eq_bigr (fun i => \sum_k form (invmx (A i j)) (delta_mx k 0) (delta_mx k 0))); last by move=> i _; rewrite trace_form.
-rewrite exchange_big mulr_sumr; apply: ler_sum => k _; apply: inverse_convex => // i /h; exact.
+rewrite (eq_bigr (fun i => \sum_k form (counting j (invmx (A i j))) (delta_mx k 0) (delta_mx k 0))); last by move=> i _; rewrite trace_form.
+rewrite exchange_big mulr_sumr; apply: ler_sum => k _; rewrite form_part.
+under [X in _ * X]eq_bigr do rewrite form_part.
+by apply: inverse_convex => // i /h; exact.
 Qed.
 
-Hypothesis lmaxP : largest_eigenvalue lmax.
+Hypothesis lmaxP : forall j, largest_eigenvalue (@lmax (rows j)).
 
 Lemma maxeig_penalty_antitone (j0 : T) A B : good A -> (forall j, symmetrical (B j)) -> (forall j, psd (B j - A j)) ->
   maxeig_penalty B <= maxeig_penalty A.
 Proof.
 move=> gA sB AB; apply: largest_le => // j; have [sA pA] := gA j.
-apply: le_trans (le_largest (fun j => weight j * lmax (invmx (A j))) j).
+apply: le_trans (le_largest (fun j => weight j * lmax (counting j (invmx (A j)))) j).
 by apply: ler_wpmul2l => //; apply: largest_eigenvalue_antitone.
 Qed.
 
@@ -139,16 +149,15 @@ Lemma maxeig_penalty_convex (j0 : T) (I : eqType) (s : seq I) (A : I -> T -> 'M[
 Proof.
 move=> s0 h; apply: largest_le => // j; set r := (size s)%:R^-1.
 have r0 : 0 <= r by rewrite invr_ge0 ler0n.
-apply: le_trans (_ : weight j * (r * \sum_(i <- s) lmax (invmx (A i j))) <= _).
+apply: le_trans (_ : weight j * (r * \sum_(i <- s) lmax (counting j (invmx (A i j)))) <= _).
   apply: ler_wpmul2l => //; apply/lmaxP.
-    by apply/symmetrical_inv/average_symmetrical => i /h/(_ j)[].
-  move=> v; rewrite formBm form_scalar subr_ge0; apply: le_trans (inverse_convex v s0 _) _.
+    by apply/symmetrical_part/symmetrical_inv/average_symmetrical => i /h/(_ j)[].
+  move=> v; rewrite formBm form_scalar subr_ge0 form_part; apply: le_trans (inverse_convex _ s0 _) _.
     by move=> i /h; apply.
   rewrite -/r -mulrA; apply: ler_wpmul2l => //; rewrite mulr_suml big_seq [X in _ <= X]big_seq.
-  apply: ler_sum => i /h/(_ j)[si _]; have /lmaxP := lexx (lmax (invmx (A i j))).
-  by move=> /(_ (symmetrical_inv si) v); rewrite formBm form_scalar subr_ge0.
+  by apply: ler_sum => i /h/(_ j)[si _]; apply/le_largest_eigenvalue/symmetrical_inv.
 rewrite mulrCA; apply: ler_wpmul2l => //; rewrite mulr_sumr; apply: ler_sum => i _.
-exact: (le_largest (fun j => weight j * lmax (invmx (A i j)))).
+exact: (le_largest (fun j => weight j * lmax (counting j (invmx (A i j))))).
 Qed.
 
 (** ** Both criteria are normalised and non-decreasing *)
@@ -202,3 +211,21 @@ move=> sub; rewrite ler_sub //; case: (pickP (@predT T)) => [j0 _|no].
 by rewrite /maxeig_penalty /largest; case: pickP => // j; have := no j.
 Qed.
 End Criteria.
+
+(** ** Where all of each state counts *)
+Section Whole.
+Variables (F : realFieldType) (d : nat) (T E : finType).
+Variables (prior : T -> 'M[F]_d) (info : E -> T -> 'M[F]_d) (weight : T -> F) (lmax : forall n, 'M[F]_n -> F).
+Implicit Type S : {set E}.
+Let whole (j : T) : 'M[F]_d := 1%:M.
+
+Lemma trace_value_whole S : trace_value prior info weight whole S =
+  \sum_j weight j * (\tr (prior j) - \tr (invmx (posterior prior info S j))).
+Proof.
+by rewrite /trace_value /trace_base /trace_penalty -sumrB; apply: eq_bigr => j _; rewrite -mulrBr /counting !part_of1.
+Qed.
+
+Lemma maxeig_value_whole S : maxeig_value prior info weight whole lmax S =
+  largest (fun j => weight j * lmax (prior j)) - largest (fun j => weight j * lmax (invmx (posterior prior info S j))).
+Proof. by congr (_ - _); apply: eq_largest => j; rewrite /counting part_of1. Qed.
+End Whole.

@@ -61,10 +61,12 @@ Definition inverse_hint (d : nat) (A : dmat) : dmat * dyadic :=
 Definition inverse_ok (d : nat) (A : dmat) (h : dmat * dyadic) : bool :=
   dlt d0 h.2 && meq d (mmul d A h.1) (mscalar d h.2).
 
-(** An upper bound on the trace of the inverse of a positive definite matrix. *)
-Definition trace_inverse_up (p : N) (d : nat) (A : dmat) : option dyadic :=
+(** [tr (S' A)], where [S] is the identity if none is given. *)
+Definition trace_with (d : nat) (S : option dmat) (A : dmat) : dyadic := if S is Some B then mdot d B A else mtrace d A.
+(** An upper bound on [tr (S' A^-1)] for a positive definite matrix. *)
+Definition trace_inverse_up (p : N) (d : nat) (S : option dmat) (A : dmat) : option dyadic :=
   let h := inverse_hint d A in
-  let t := mtrace d h.1 in
+  let t := trace_with d S h.1 in
   let q := quotient_up p t h.2 in
   if [&& is_pd d A, inverse_ok d A h & dle t (dmul q h.2)] then Some q else None.
 
@@ -242,11 +244,15 @@ have [u _] := mulmx1_unit e1.
 by rewrite -[RHS]mul1mx -(mulVmx u) -mulmxA e1 mulmx1.
 Qed.
 
-Lemma trace_inverse_upP p d A q : symmetrical (mx d A) -> trace_inverse_up p d A = Some q ->
-  pd (mx d A) /\ \tr (invmx (mx d A)) <= val q.
+Definition square_mx (d : nat) (S : option dmat) : 'M[F]_d := if S is Some B then mx d B else 1%:M.
+Lemma trace_withP d S A : val (trace_with d S A) = \tr ((square_mx d S)^T *m mx d A).
+Proof. by case: S => [B|]; rewrite /trace_with /= ?mx_dot // mx_trace trmx1 mul1mx. Qed.
+
+Lemma trace_inverse_upP p d S A q : symmetrical (mx d A) -> trace_inverse_up p d S A = Some q ->
+  pd (mx d A) /\ \tr ((square_mx d S)^T *m invmx (mx d A)) <= val q.
 Proof.
 rewrite /trace_inverse_up; set h := inverse_hint d A => sA; case: ifP => // /and3P[/(is_pdP sA) pA ok le] []<-.
 have [D0 ->] := inverse_okP ok; split=> //.
-by rewrite linearZ /= mulrC ler_pdivr_mulr // -mx_trace -val_mul -val_le.
+by rewrite -scalemxAr linearZ /= mulrC ler_pdivr_mulr // -trace_withP -val_mul -val_le.
 Qed.
 End Meaning.

@@ -1,5 +1,5 @@
 (** Quadratic forms over an ordered field: inverses reverse the Loewner order, and the tangent bounds of trace and
-    largest eigenvalue. No square roots, no eigenvalues. *)
+    largest eigenvalue, of the whole state or of a part of it. No square roots, no eigenvalues. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
 Set Implicit Arguments.
@@ -127,50 +127,109 @@ have -> : 2%:R * form (invmx B) v v = form (invmx B) v v + form (invmx B) v v by
 by rewrite ler_add2l.
 Qed.
 
-(** [tr (L^-1) >= 2 tr Y - tr (Y' L Y)] for any [Y]. *)
-Theorem trace_fenchel L Y : symmetrical L -> pd L -> 2%:R * \tr Y - \tr (Y^T *m L *m Y) <= \tr (invmx L).
-Proof.
-move=> s p; rewrite !trace_form mulr_sumr -sumrB; apply: ler_sum => i _.
-apply: le_trans (tangent (delta_mx i 0) (Y *m delta_mx i 0) s p).
-by rewrite -form_mul /form trmx_mul !mulmxA.
-Qed.
-
-(** It is attained at [Y = L^-1]. *)
-Lemma trace_fenchel_tight L : symmetrical L -> pd L ->
-  2%:R * \tr (invmx L) - \tr ((invmx L)^T *m L *m invmx L) = \tr (invmx L).
-Proof. by move=> s p; rewrite (symmetrical_inv s) mulVmx ?pd_unit // mul1mx; ring. Qed.
-
-Lemma trace_inverse_antitone A B : symmetrical A -> symmetrical B -> pd A -> psd (B - A) ->
-  \tr (invmx B) <= \tr (invmx A).
-Proof.
-move=> sA sB pA AB; rewrite -subr_ge0 -linearB /=; apply: psd_trace; exact: inverse_antitone.
-Qed.
-
 (** ** The largest eigenvalue, known by what it is compared with *)
 Definition largest_eigenvalue (lmax : 'M[F]_d -> F) : Prop :=
   forall A, symmetrical A -> forall x, (lmax A <= x) <-> psd (x%:M - A).
+End Quadratic.
 
-Variable lmax : 'M[F]_d -> F.
+(** ** A part [C x] of a state [x] *)
+Section Part.
+Variables (F : realFieldType) (d q : nat) (C : 'M[F]_(q, d)).
+Implicit Types (A B L : 'M[F]_d) (Y : 'M[F]_(d, q)) (v : 'cV[F]_d).
+
+(** The covariance of [C x] where [A] is that of [x]. *)
+Definition part_of A : 'M[F]_q := C *m A *m C^T.
+
+Lemma form_part A u w : form (part_of A) u w = form A (C^T *m u) (C^T *m w).
+Proof. by rewrite /form /part_of trmx_mul trmxK !mulmxA. Qed.
+
+Lemma symmetrical_part A : symmetrical A -> symmetrical (part_of A).
+Proof. by move=> s; rewrite /symmetrical /part_of !trmx_mul trmxK s mulmxA. Qed.
+
+Lemma psd_part A : psd A -> psd (part_of A).
+Proof. by move=> h u; rewrite form_part. Qed.
+
+Lemma part_ofB A B : part_of (A - B) = part_of A - part_of B.
+Proof. by rewrite /part_of mulmxBr mulmxBl. Qed.
+
+Lemma trace_part A : \tr (part_of A) = \tr (C^T *m C *m A).
+Proof. by rewrite /part_of mxtrace_mulC mulmxA. Qed.
+
+(** [tr (C L^-1 C') >= 2 tr (C Y) - tr (Y' L Y)] for any [Y]. *)
+Theorem trace_fenchel L Y : symmetrical L -> pd L ->
+  2%:R * \tr (C *m Y) - \tr (Y^T *m L *m Y) <= \tr (part_of (invmx L)).
+Proof.
+move=> s p; rewrite !trace_form mulr_sumr -sumrB; apply: ler_sum => i _; rewrite form_part.
+apply: le_trans (tangent (C^T *m delta_mx i 0) (Y *m delta_mx i 0) s p).
+by rewrite /dot /form !trmx_mul trmxK !mulmxA.
+Qed.
+
+(** It is attained at [Y = L^-1 C']. *)
+Lemma trace_fenchel_tight L : symmetrical L -> pd L -> let Y := invmx L *m C^T in
+  2%:R * \tr (C *m Y) - \tr (Y^T *m L *m Y) = \tr (part_of (invmx L)).
+Proof.
+move=> s p Y; rewrite /Y trmx_mul trmxK (symmetrical_inv s) -!mulmxA mulKVmx ?pd_unit // /part_of mulmxA.
+by rewrite mulr_natl mulr2n addrK.
+Qed.
+
+Lemma trace_inverse_antitone A B : symmetrical A -> symmetrical B -> pd A -> psd (B - A) ->
+  \tr (part_of (invmx B)) <= \tr (part_of (invmx A)).
+Proof.
+move=> sA sB pA AB; rewrite -subr_ge0 -linearB /= -part_ofB; apply/psd_trace/psd_part; exact: inverse_antitone.
+Qed.
+
+Variable lmax : 'M[F]_q -> F.
 Hypothesis lmaxP : largest_eigenvalue lmax.
 
-(** [lambda_max(L^-1) >= 2t - t^2 v'Lv / v'v]. *)
-Theorem largest_eigenvalue_fenchel L v x : symmetrical L -> pd L -> v != 0 ->
-  2%:R * x - x ^+ 2 * (form L v v / dot v v) <= lmax (invmx L).
+Lemma le_largest_eigenvalue A u : symmetrical A -> form A (C^T *m u) (C^T *m u) <= lmax (part_of A) * dot u u.
 Proof.
-move=> s p v0; have vv := dot_gt0 v0; have /lmaxP/(_ v) := lexx (lmax (invmx L)).
-move=> /(_ (symmetrical_inv s)); rewrite formBm form_scalar subr_ge0 => h.
-have := le_trans (tangent v (x *: v) s p) h.
-rewrite dotZr formZl formZr -ler_pdivr_mulr // => h2; apply: le_trans h2.
+move=> s; have /lmaxP/(_ u) := lexx (lmax (part_of A)).
+by move=> /(_ (symmetrical_part s)); rewrite formBm form_scalar subr_ge0 form_part.
+Qed.
+
+(** [lambda_max (C L^-1 C') >= 2t - t^2 v'Lv / |Cv|^2]. *)
+Theorem largest_eigenvalue_fenchel L v x : symmetrical L -> pd L -> C *m v != 0 ->
+  2%:R * x - x ^+ 2 * (form L v v / dot (C *m v) (C *m v)) <= lmax (part_of (invmx L)).
+Proof.
+move=> s p v0; have vv := dot_gt0 v0.
+have := le_trans (tangent (C^T *m (C *m v)) (x *: v) s p) (le_largest_eigenvalue (C *m v) (symmetrical_inv s)).
+have -> : dot (C^T *m (C *m v)) (x *: v) = x * dot (C *m v) (C *m v).
+  by rewrite dotZr /dot !trmx_mul trmxK !mulmxA.
+rewrite formZl formZr -ler_pdivr_mulr // => h; apply: le_trans h.
 rewrite le_eqVlt; apply/orP; left; apply/eqP.
 by field; rewrite gt_eqF.
 Qed.
 
 Lemma largest_eigenvalue_antitone A B : symmetrical A -> symmetrical B -> pd A -> psd (B - A) ->
-  lmax (invmx B) <= lmax (invmx A).
+  lmax (part_of (invmx B)) <= lmax (part_of (invmx A)).
 Proof.
-move=> sA sB pA AB; apply/lmaxP; first exact: symmetrical_inv.
-have /lmaxP h := lexx (lmax (invmx A)); move: (h (symmetrical_inv sA)) => {}h.
-have := psdD h (inverse_antitone sA sB pA AB); congr psd.
-by rewrite addrA subrK.
+move=> sA sB pA AB; apply/lmaxP; first exact/symmetrical_part/symmetrical_inv.
+have /lmaxP h := lexx (lmax (part_of (invmx A))); move: (h (symmetrical_part (symmetrical_inv sA))) => {}h.
+have := psdD h (psd_part (inverse_antitone sA sB pA AB)); congr psd.
+by rewrite part_ofB addrA subrK.
 Qed.
-End Quadratic.
+
+(** With [L > 0] and [a > 0]: [lambda_max (C L^-1 C') <= x / w] where [x L - w C'C >= 0]. *)
+Lemma largest_eigenvalue_below L w x : symmetrical L -> pd L -> 0 < w -> 0 < x ->
+  psd (x *: L - w *: (C^T *m C)) -> w * lmax (part_of (invmx L)) <= x.
+Proof.
+move=> s p w0 x0 h; rewrite mulrC -ler_pdivl_mulr //; apply/lmaxP; first exact/symmetrical_part/symmetrical_inv.
+move=> u; rewrite formBm form_scalar form_part subr_ge0; set z := C^T *m u; set y := invmx L *m z.
+have Ly : L *m y = z by rewrite mulKVmx ?pd_unit.
+have zy : form (invmx L) z z = dot z y by rewrite form_mul.
+have fL : form L y y = dot z y by rewrite form_mul Ly dotC.
+have cy v : form (C^T *m C) v v = dot (C *m v) (C *m v) by rewrite /form /dot trmx_mul !mulmxA.
+have uy v : dot z v = dot u (C *m v) by rewrite /dot trmx_mul trmxK mulmxA.
+have := h y; rewrite formBm !formZm fL cy subr_ge0 => hy.
+(* [0 <= |w C y - x u|^2 = w^2 |Cy|^2 - 2 w x u'Cy + x^2 |u|^2]. *)
+have := dot_ge0 (w *: (C *m y) - x *: u); rewrite -[dot _ _]mul1r -form_scalar.
+rewrite formBr !formBl !formZl !formZr !form_scalar !mul1r [dot (C *m y) u]dotC -uy => sq.
+rewrite zy mulrAC ler_pdivl_mulr // -(ler_pmul2r x0) -subr_ge0; apply: le_trans sq _.
+have {}hy := ler_wpmul2l (ltW w0) hy; rewrite -subr_ge0 in hy; rewrite -subr_ge0; apply: le_trans hy _.
+by rewrite le_eqVlt; apply/orP; left; apply/eqP; ring.
+Qed.
+End Part.
+
+(** The whole state counts. *)
+Lemma part_of1 (F : realFieldType) d (A : 'M[F]_d) : part_of 1%:M A = A.
+Proof. by rewrite /part_of mul1mx trmx1 mulmx1. Qed.

@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Graph Worth Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Outputs Graph Worth Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -158,29 +158,32 @@ Definition prior_of (j : target) : 'M[F]_d := mx F d (unpack d (nth [::] (priors
 Definition info_of (e : element) (j : target) : 'M[F]_d :=
   mx F d (unpack d (nth [::] (nth [::] (informations pb) e) j)).
 Definition weight_of (j : target) : F := val (nth d0 ws j).
+(** What counts of a target: all of its state, or the part that its output says. *)
+Definition counted_rows (j : target) : nat := output_rows d (outputs pb) j.
+Definition output_of (j : target) : 'M[F]_(counted_rows j, d) := output_mx F d (outputs pb) j.
 Definition plan_of : {ffun robot -> element} := [ffun i : robot => inord (nth 0%N (plan cl) i)].
 
-Variables (lmax : 'M[F]_d -> F) (ln : F -> F).
+Variables (lmax : forall n, 'M[F]_n -> F) (ln : F -> F).
 Definition value (S : {set element}) : F :=
   match objective pb with
-  | Trace => trace_value prior_of info_of weight_of S
+  | Trace => trace_value prior_of info_of weight_of output_of S
   | LogDet => logdet_value ln prior_of info_of weight_of S
-  | MaxEigenvalue => maxeig_value prior_of info_of weight_of lmax S
+  | MaxEigenvalue => maxeig_value prior_of info_of weight_of output_of lmax S
   end.
-Hypothesis lmaxP : objective pb = MaxEigenvalue -> largest_eigenvalue lmax.
+Hypothesis lmaxP : objective pb = MaxEigenvalue -> forall j, largest_eigenvalue (@lmax (counted_rows j)).
 Hypothesis lnP : objective pb = LogDet -> logarithm ln.
 
 Definition penalty (L : target -> 'M[F]_d) : F :=
   match objective pb with
-  | Trace => trace_penalty weight_of L
+  | Trace => trace_penalty weight_of output_of L
   | LogDet => logdet_penalty ln weight_of L
-  | MaxEigenvalue => maxeig_penalty weight_of lmax L
+  | MaxEigenvalue => maxeig_penalty weight_of output_of lmax L
   end.
 Definition base : F :=
   match objective pb with
-  | Trace => trace_base prior_of weight_of
+  | Trace => trace_base prior_of weight_of output_of
   | LogDet => logdet_base ln prior_of weight_of
-  | MaxEigenvalue => maxeig_base prior_of weight_of lmax
+  | MaxEigenvalue => maxeig_base prior_of weight_of output_of lmax
   end.
 
 Lemma valueE S : value S = base - penalty (posterior prior_of info_of S).
@@ -193,11 +196,13 @@ Let dim_pos : (0 < d)%N. Proof. by case/and3P: shapes. Qed.
 Let targets_pos : (0 < m)%N. Proof. by case/and3P: shapes. Qed.
 Let j0 : target := Ordinal targets_pos.
 Let weights_size : size ws = m. Proof. by case/and4P: shapes => _ _ _ /andP[/eqP]. Qed.
+Let outputs_good : outputs_ok d (outputs pb) m.
+Proof. by case/and4P: shapes => _ _ _ /and4P[_ _ _ /andP[]]. Qed.
 Let infos_size : size (informations pb) = size (owners w).
 Proof. by case/and4P: shapes => _ _ _ /and4P[_ _ /eqP]. Qed.
 Let rows_size e : (e < size (owners w))%N -> size (nth [::] (informations pb) e) = m.
 Proof.
-case/and4P: shapes => _ _ _ /and4P[_ _ /eqP <- /allP h] el.
+case/and4P: shapes => _ _ _ /and4P[_ _ /eqP <- /and3P[_ _ /allP h]] el.
 by have /andP[/eqP] := h _ (mem_nth [::] el).
 Qed.
 
@@ -237,18 +242,18 @@ Qed.
 Lemma penalty_antitone A B : good A -> (forall j, symmetrical (B j)) -> (forall j, psd (B j - A j)) ->
   penalty B <= penalty A.
 Proof.
-rewrite /penalty; case e: (objective pb) => gA sB AB; first exact: (trace_penalty_antitone weight_ge0).
+rewrite /penalty; case e: (objective pb) => gA sB AB; first exact: (trace_penalty_antitone output_of weight_ge0).
   exact: (logdet_penalty_antitone (lnP e) weight_ge0).
-exact: (maxeig_penalty_antitone weight_ge0 (lmaxP e)).
+exact: (maxeig_penalty_antitone output_of weight_ge0 (lmaxP e)).
 Qed.
 
 Lemma penalty_convex (I : eqType) (s : seq I) (A : I -> target -> 'M[F]_d) : s != [::] ->
   (forall i, i \in s -> good (A i)) ->
   penalty (fun j => (size s)%:R^-1 *: \sum_(i <- s) A i j) <= (size s)%:R^-1 * \sum_(i <- s) penalty (A i).
 Proof.
-rewrite /penalty; case e: (objective pb) => s0 gA; first exact: (trace_penalty_convex weight_ge0).
+rewrite /penalty; case e: (objective pb) => s0 gA; first exact: (trace_penalty_convex output_of weight_ge0).
   exact: (logdet_penalty_convex (lnP e) weight_ge0).
-exact: (maxeig_penalty_convex weight_ge0 (lmaxP e)).
+exact: (maxeig_penalty_convex output_of weight_ge0 (lmaxP e)).
 Qed.
 
 Lemma sum_contributed p (G : {set robot}) (f : element -> 'M[F]_d) : is_plan (team_of w) p ->
@@ -331,6 +336,13 @@ apply: psdD; first by apply: psd_sum => i _; case: (deltaP (p i) j).
 by apply: psd_scalar; rewrite subr_ge0; apply: worst_ge.
 Qed.
 
+(** ** What counts *)
+Let Ss := output_squares pb.
+Lemma squareP (j : target) : square_mx F d (nth None Ss j) = (output_of j)^T *m output_of j.
+Proof. exact: (mx_squares F outputs_good). Qed.
+Lemma trace_squareP (j : target) A : \tr ((square_mx F d (nth None Ss j))^T *m A) = \tr (part_of (output_of j) A).
+Proof. by rewrite squareP trmx_mul trmxK trace_part. Qed.
+
 (** ** Linear bounds on groups *)
 Lemma dotsE Ws Is : size Ws = m -> size Is = m ->
   val (dots d Ws Is) = \sum_(j : target) \tr ((mx F d (nth [::] Ws j))^T *m mx F d (nth [::] Is j)).
@@ -356,48 +368,57 @@ Qed.
 Lemma highs_size : size highs = m.
 Proof. by have [-> _] := all_some_nth [::] [::] 0 highsE; rewrite size_map. Qed.
 
+Lemma covarianceP (j : target) : let q := counted_rows j in
+  let A := nth [::] (mkseq (fun j => covariance d (outputs pb) j (nth [::] (prior_matrices pb) j)) m) j in
+  mx F q A = part_of (output_of j) (prior_of j) /\ forall x,
+  symmetrical (mx F q (msub q (mscalar q x) (mscale q (nth d0 ws j) A))).
+Proof.
+rewrite /= nth_mkseq // nth_prior //; have e := mx_covariance F d (outputs pb) j (unpack d (nth [::] (priors pb) j)).
+split=> // x; apply: sub_symmetrical; first exact: scalar_symmetrical.
+by apply: scale_symmetrical; rewrite e; apply: symmetrical_part; case: (prior_good j).
+Qed.
+
 Lemma base_high : objective pb = MaxEigenvalue -> base <= val (prior_high pr).
 Proof.
 move=> e; rewrite /base e; move: range_good; rewrite /prior_range_ok e => /andP[/allP h _].
-apply: largest_le => // j; have := h j; rewrite mem_iota add0n ltn_ord nth_prior // => /(_ isT).
-have [s _] := prior_good j; have w0 := weight_gt0 j.
-have sm : symmetrical (mx F d (msub d (mscalar d (prior_high pr)) (mscale d (nth d0 ws j) (unpack d (nth [::] (priors pb) j))))).
-  by apply: sub_symmetrical; [apply: scalar_symmetrical | apply: scale_symmetrical].
-move/(is_psdP sm); rewrite mx_sub mx_scalar mx_scale -/(weight_of j) -/(prior_of j) => p.
-rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e s) => v; have := p v.
+apply: largest_le => // j; have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT).
+have [s _] := prior_good j; have w0 := weight_gt0 j; have [eA /(_ (prior_high pr)) sm] := covarianceP j.
+move/(is_psdP sm); rewrite mx_sub mx_scalar mx_scale eA -/(weight_of j) => p.
+rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e (symmetrical_part (output_of j) s)) => v; have := p v.
 rewrite !formBm !form_scalar formZm !subr_ge0 => le.
 by rewrite mulrAC ler_pdivl_mulr // [form _ _ _ * _]mulrC.
 Qed.
 
-Lemma gradientP pt g : gradient (objective pb) d m ws (prior_matrices pb) highs (prior_high pr) pt = Some g ->
+Lemma gradientP pt g : gradient (objective pb) d m ws (outputs pb) Ss (prior_matrices pb) highs (prior_high pr) pt = Some g ->
   size g.1 = m /\ forall p (G : {set robot}), is_plan (team_of w) p ->
   value (contributed p G) <= val g.2 + \sum_(i in G) val (dots d g.1 (nth [::] (info_matrices pb) (p i))).
 Proof.
 rewrite /gradient; case e: (objective pb); case: pt => [ys|j t v] //; case: ifP => // cond [<-] /=.
-  rewrite size_mkseq; split=> // p G okp; set Ws := mkseq _ m.
+  rewrite size_mkseq; split=> // p G okp; set Zs := mkseq _ m; set Ws := mkseq _ m.
   have sW : size Ws = m by rewrite size_mkseq.
-  pose Y (j : target) := mx F d (unpack d (nth [::] ys j)).
-  have Ys j : symmetrical (Y j) := unpack_symmetrical F d _.
-  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: (Y j *m Y j).
-    rewrite nth_mkseq // mx_scale mx_mul (nth_map [::]) ?(eqP cond) // -/(Y j).
-    by rewrite linearZ /= trmx_mul Ys.
+  pose Z j := nth [::] Zs j.
+  pose Y (j : target) : 'M[F]_(d, counted_rows j) := touch_mx F d (outputs pb) j (Z j).
+  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: (Y j *m (Y j)^T).
+    have -> : nth [::] Ws j = mscale d (nth d0 ws j) (outer_product d (counted_rows j) (Z j)) by rewrite nth_mkseq.
+    by rewrite mx_scale mx_outer -/(Y j) linearZ /= trmx_mul trmxK.
   rewrite val_add dotsE ?highs_size // val_sum_iota.
-  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m Y j *m info_of (p i) j))); last first.
+  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m (Y j)^T *m info_of (p i) j))); last first.
     move=> i _; rewrite dots_info //; apply: eq_bigr => j _.
     by rewrite We -scalemxAl linearZ.
   rewrite [X in _ <= _ + X]exchange_big /= -!big_split /value e /trace_value /trace_base /trace_penalty -sumrB; apply: ler_sum => j _ /=.
-  have [sL pL] := posterior_pd G okp j; have [sP pP] := prior_good j.
-  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr val_mul val_sub val_mul !mx_trace val_nat.
-  rewrite nth_prior // (nth_map [::]) ?(eqP cond) // -/(prior_of j) -/(Y j) -!mulrDr.
+  have [sL pL] := posterior_pd G okp j.
+  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr val_mul val_sub val_mul trace_withP val_nat -/(Z j).
+  rewrite touching_traceP nth_prior // trace_squareP -/(prior_of j) -/(Y j) -/(output_of j) -!mulrDr.
   apply: ler_wpmul2l; first exact: weight_ge0.
-  have := trace_fenchel (Y j) sL pL; rewrite Ys => fen.
-  have sand A : \tr (Y j *m A *m Y j) = \tr (Y j *m Y j *m A) by rewrite mxtrace_mulC mulmxA.
-  have up : \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j) <=
-      \tr (Y j *m Y j *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m Y j *m info_of (p i) j).
+  have fen := trace_fenchel (output_of j) (Y j) sL pL.
+  have sand A : \tr ((Y j)^T *m A *m Y j) = \tr (Y j *m (Y j)^T *m A) by rewrite mxtrace_mulC mulmxA.
+  have up : \tr ((Y j)^T *m posterior prior_of info_of (contributed p G) j *m Y j) <=
+      \tr (Y j *m (Y j)^T *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m (Y j)^T *m info_of (p i) j).
     rewrite sand /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /=.
     rewrite -mulmxBr -sand; apply: psd_trace => x; have [_ ph] := highP j.
-    have := ph (Y j *m x); rewrite /form trmx_mul Ys !mulmxA //.
-  rewrite -[X in _ <= X]addrA -addrA ler_add2l; apply: le_trans (_ : - (2%:R * \tr (Y j) - \tr (Y j *m posterior prior_of info_of (contributed p G) j *m Y j)) <= _); first by rewrite ler_opp2.
+    have := ph (Y j *m x); rewrite /form trmx_mul !mulmxA //.
+  rewrite /counting -[X in _ <= X]addrA -addrA ler_add2l.
+  apply: le_trans (_ : - (2%:R * \tr (output_of j *m Y j) - \tr ((Y j)^T *m posterior prior_of info_of (contributed p G) j *m Y j)) <= _); first by rewrite ler_opp2.
   by rewrite opprB addrC ler_add2l.
   move/andP: cond => [/eqP sz /allP defs].
   rewrite size_mkseq; split=> // p G okp; set Ws := mkseq _ m.
@@ -427,14 +448,14 @@ rewrite /gradient; case e: (objective pb); case: pt => [ys|j t v] //; case: ifP 
     have [sH pH] := highP j; apply: trace_product_ge0 => //.
     by rewrite /symmetrical linearB /= sH (symmetrical_inv sP).
   exact: logdet_shape lq fen up.
-move/and3P: cond => [jm s0 bt]; set s := dsum _ in s0 bt; set b := quotient_up _ _ _ in bt *.
+move/and3P: cond => [jm s0 bt]; set s := length_of _ _ _ in s0 bt; set b := quotient_up _ _ _ in bt *.
 rewrite size_mkseq; split=> // p G okp; set W := mkm _ _; set Ws := mkseq _ m.
 have sW : size Ws = m by rewrite size_mkseq.
 pose jt : target := Ordinal jm; pose V : 'cV[F]_d := \col_i val (nth d0 v i).
-have VV : dot V V = val s.
-  by rewrite dot_sum val_sum_iota; apply: eq_bigr => i _; rewrite mxE val_mul expr2.
-rewrite (val_lt F) val0 -VV in s0; rewrite (val_le F) !val_mul -VV in bt.
-have V0 : V != 0 by apply: contraTneq s0 => ->; rewrite /dot mulmx0 mxE ltxx.
+pose U := output_of jt *m V; have UU : dot U U = val s.
+  by rewrite /s (length_ofP F d) (squareP jt) /U /dot /form trmx_mul !mulmxA.
+rewrite (val_lt F) val0 -UU in s0; rewrite (val_le F) !val_mul -UU in bt.
+have U0 : U != 0 by apply: contraTneq s0 => ->; rewrite /dot mulmx0 mxE ltxx.
 have mW : mx F d W = (weight_of jt * val b) *: (V *m V^T).
   by rewrite mx_mkm; apply/matrixP => i k; rewrite !mxE !val_mul big_ord1 !mxE.
 have one (A : target -> 'M[F]_d) : \sum_(k : target) \tr ((mx F d (nth [::] Ws k))^T *m A k) =
@@ -449,18 +470,18 @@ rewrite (eq_bigr (fun i => weight_of jt * val b * form (info_of (p i) jt) V V));
 have [sL pL] := posterior_pd G okp jt; set L := posterior _ _ _ in sL pL.
 have w0 := weight_gt0 jt; have b0 : 0 <= val b.
   by rewrite -(pmulr_lge0 _ s0); apply: le_trans bt; rewrite -expr2 sqr_ge0.
-have fen := largest_eigenvalue_fenchel (lmaxP e) (val t) sL pL V0.
+have fen := largest_eigenvalue_fenchel (lmaxP e (j:=jt)) (val t) sL pL U0.
 have Lb : form (L jt) V V <= form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V.
   rewrite /L /posterior sum_contributed // formDm form_sum ler_add2r -subr_ge0 -formBm.
   by have [_ h] := highP jt; apply: h.
-have le1 : 2%:R * val t - val b * form (L jt) V V <= lmax (invmx (L jt)).
+have le1 : 2%:R * val t - val b * form (L jt) V V <= lmax (part_of (output_of jt) (invmx (L jt))).
   apply: le_trans fen; rewrite ler_add2l ler_opp2 mulrA ler_pdivr_mulr // [X in _ <= X]mulrAC.
   by apply: ler_wpmul2r; [apply: (pd_psd pL) | rewrite expr2].
 rewrite valueE -/L /penalty e -!mulr_sumr.
-have le2 : weight_of jt * lmax (invmx (L jt)) <= maxeig_penalty weight_of lmax L.
-  exact: (le_largest (fun k => weight_of k * lmax (invmx (L k)))).
+have le2 : weight_of jt * lmax (part_of (output_of jt) (invmx (L jt))) <= maxeig_penalty weight_of output_of lmax L.
+  exact: (le_largest (fun k => weight_of k * lmax (counting output_of k (invmx (L k))))).
 have le3 : weight_of jt * (2%:R * val t) - weight_of jt * val b *
-    (form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V) <= maxeig_penalty weight_of lmax L.
+    (form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V) <= maxeig_penalty weight_of output_of lmax L.
   apply: le_trans le2; rewrite -mulrA -mulrBr; apply: ler_wpmul2l; first exact: ltW.
   by apply: le_trans le1; rewrite ler_add2l ler_opp2; apply: ler_wpmul2l.
 have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
@@ -576,7 +597,7 @@ Qed.
 
 (** What the scores of a point say, in the words of trees and covers. *)
 Lemma tangentP p gs : is_plan (team_of w) p ->
-  all_some [seq gradient (objective pb) d m ws (prior_matrices pb) highs (prior_high pr) pt | pt <- points pr] = Some gs ->
+  all_some [seq gradient (objective pb) d m ws (outputs pb) Ss (prior_matrices pb) highs (prior_high pr) pt | pt <- points pr] = Some gs ->
   forall q, (q < size gs)%N -> let t := nth ([::], d0) [seq point_scores d (info_matrices pb) g | g <- gs] q in
   size t.1 = size (owners w) /\
   forall G : {set robot}, value (contributed p G) <= val t.2 + \sum_(i in G) val (nth d0 t.1 (p i)).
@@ -710,20 +731,19 @@ Lemma base_lowP : val (base_low pb pr) <= base.
 Proof.
 rewrite /base_low /base; case e: (objective pb).
 - rewrite /trace_total val_sum_iota /trace_base; apply: ler_sum => j _.
-  by rewrite val_mul mx_trace nth_prior.
+  by rewrite val_mul trace_withP trace_squareP nth_prior.
 - rewrite /logdet_total_low val_opp val_sum_iota /logdet_base -sumrN; apply: ler_sum => j _.
   rewrite val_mul -mulrN; apply: ler_wpmul2l; first exact: weight_ge0.
   have [s p] := prior_good j; have P0 := det_gt0 s p; rewrite nth_prior // ler_oppl -(lnV (lnP e)) // -[_^-1]mul1r.
   rewrite -{1}(val1 F) -(mdetE F d (unpack d _)); apply: log_quotient_upP; rewrite ?val1 ?ltr01 ?mdetE //; exact: lnP.
 move: range_good; rewrite /prior_range_ok e => /andP[_ /hasP[j]]; rewrite mem_iota add0n => /andP[_ jm] npd.
-pose k : target := Ordinal jm; apply: le_trans (le_largest (fun j => weight_of j * lmax (prior_of j)) k).
-rewrite leNgt; apply: contra npd => lt.
-have [s p] := prior_good k; rewrite nth_prior //.
-have sm : symmetrical (mx F d (msub d (mscalar d (prior_low pr)) (mscale d (nth d0 ws j) (unpack d (nth [::] (priors pb) j))))).
-  by apply: sub_symmetrical; [apply: scalar_symmetrical | apply: scale_symmetrical].
-apply/(is_pdP sm); rewrite mx_sub mx_scalar mx_scale => v v0.
-have /(lmaxP e s)/(_ v) := lexx (lmax (prior_of k)); rewrite !formBm !form_scalar formZm !subr_ge0 => le.
-rewrite subr_gt0; apply: (@le_lt_trans _ _ (weight_of k * lmax (prior_of k) * dot v v)).
+pose k : target := Ordinal jm; pose M := part_of (output_of k) (prior_of k).
+apply: le_trans (le_largest (fun j => weight_of j * lmax (counting output_of j (prior_of j))) k).
+rewrite leNgt; apply: contra npd => lt; rewrite /counting -/M in lt.
+have [s _] := prior_good k; have [eA /(_ (prior_low pr)) sm] := covarianceP k.
+apply/(is_pdP sm); rewrite mx_sub mx_scalar mx_scale eA -/M => v v0.
+have /(lmaxP e (symmetrical_part (output_of k) s))/(_ v) := lexx (lmax M); rewrite !formBm !form_scalar formZm !subr_ge0 => le.
+rewrite subr_gt0; apply: (@le_lt_trans _ _ (weight_of k * lmax M * dot v v)).
   rewrite -mulrA; exact: (ler_wpmul2l (weight_ge0 k) le).
 by rewrite ltr_pmul2r ?dot_gt0.
 Qed.
@@ -745,14 +765,14 @@ move=> h; have [_ h2] := all_some_nth 0%N y0 j h; rewrite size_iota in h2.
 by have := h2 (ltn_ord j); rewrite nth_iota // add0n.
 Qed.
 
-Lemma trace_upP p s y : trace_up d m ws p s = Some y -> (forall j, symmetrical (fam s j)) ->
-  good (fam s) /\ trace_penalty weight_of (fam s) <= val y.
+Lemma trace_upP p s y : trace_up d m ws Ss p s = Some y -> (forall j, symmetrical (fam s j)) ->
+  good (fam s) /\ trace_penalty weight_of output_of (fam s) <= val y.
 Proof.
 rewrite /trace_up; case e: (all_some _) => [ys|//] [<-] sym.
 have h j := trace_inverse_upP (sym j) (all_some_iota d0 j e).
 split=> [j|]; first by split=> //; case: (h j).
 rewrite val_sum_iota; apply: ler_sum => j _; rewrite val_mul; apply: ler_wpmul2l; first exact: weight_ge0.
-by case: (h j).
+by rewrite /counting -trace_squareP; case: (h j).
 Qed.
 
 Let groups := weight_groups ws.
@@ -784,39 +804,33 @@ apply: le_trans (log_product_upP (lnP e) k p _ le); rewrite ?big_map.
 by move=> x /mapP[j /lt jm ->]; rewrite at_ //; apply: det0.
 Qed.
 
-Lemma eigen_enoughP x s : eigen_enough d m ws x s -> (forall j, symmetrical (fam s j)) ->
-  kind = MaxEigenvalue -> good (fam s) /\ maxeig_penalty weight_of lmax (fam s) <= val x.
+Lemma eigen_enoughP x s : eigen_enough d m ws Ss x s -> (forall j, symmetrical (fam s j)) ->
+  kind = MaxEigenvalue -> good (fam s) /\ maxeig_penalty weight_of output_of lmax (fam s) <= val x.
 Proof.
 rewrite /eigen_enough (val_lt F) val0 => /andP[x0 /allP h] sym e.
-have each (j : target) : pd (fam s j) /\ psd (val x *: fam s j - (weight_of j)%:M).
+have each (j : target) : pd (fam s j) /\ psd (val x *: fam s j - weight_of j *: ((output_of j)^T *m output_of j)).
   have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT)/andP[h1 h2]; split; first by apply/(is_pdP (sym j)).
-  have sm : symmetrical (mx F d (msub d (mscale d x (nth [::] s j)) (mscalar d (nth d0 ws j)))).
-    by apply: sub_symmetrical; [apply: scale_symmetrical; apply: sym | apply: scalar_symmetrical].
-  by have := is_psdP sm h2; rewrite mx_sub mx_scale mx_scalar.
+  have sm : symmetrical (mx F d (msub d (mscale d x (nth [::] s j)) (weighted_square d (nth d0 ws j) (nth None Ss j)))).
+    apply: sub_symmetrical; first by apply: scale_symmetrical; apply: sym.
+    by rewrite mx_weighted_square squareP /symmetrical linearZ /= trmx_mul trmxK.
+  by have := is_psdP sm h2; rewrite mx_sub mx_scale mx_weighted_square squareP.
 split=> [j|]; first by split=> //; case: (each j).
-apply: largest_le => // j; have [pA pB] := each j; have w0 := weight_gt0 j; have u0 : 0 < weight_of j / val x by rewrite divr_gt0.
-rewrite mulrC -ler_pdivl_mulr //; apply/(lmaxP e (symmetrical_inv (sym j))).
-have pu : pd ((weight_of j / val x)%:M : 'M[F]_d).
-  by move=> v v0; rewrite form_scalar mulr_gt0 ?dot_gt0.
-have su : symmetrical ((weight_of j / val x)%:M : 'M[F]_d) by rewrite /symmetrical tr_scalar_mx.
-have diff : psd (fam s j - (weight_of j / val x)%:M).
-  move=> v; rewrite -(pmulr_rge0 _ x0); have := pB v; rewrite !formBm formZm !form_scalar mulrBr mulrA.
-  by rewrite mulrCA divff ?gt_eqF // mulr1.
-have := inverse_antitone su (sym j) pu diff; rewrite invmx_scalar invf_div //.
+apply: largest_le => // j; have [pA pB] := each j.
+exact: (largest_eigenvalue_below (lmaxP e (j:=j)) (sym j) pA (weight_gt0 j) x0 pB).
 Qed.
 
-Lemma penalty_upP x s e y : penalty_up kind d m ws groups x s e = Some y -> (forall j, symmetrical (fam s j)) ->
+Lemma penalty_upP x s e y : penalty_up kind d m ws Ss groups x s e = Some y -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ penalty (fam s) <= val y.
 Proof.
 rewrite /penalty_up /penalty -/kind; case ek: kind => h sym; [exact: trace_upP h sym | exact: logdet_upP ek h sym |].
 move: h; rewrite /eigen_up; case: ifP => // h [<-]; exact: eigen_enoughP.
 Qed.
 
-Lemma withinP x s : penalty_within kind d m ws groups x s -> (forall j, symmetrical (fam s j)) ->
+Lemma withinP x s : penalty_within kind d m ws Ss groups x s -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ penalty (fam s) <= val x.
 Proof.
 rewrite /penalty_within => h sym.
-have some : has (fun e => is_at_most (penalty_up kind d m ws groups x s e) x) precisions ->
+have some : has (fun e => is_at_most (penalty_up kind d m ws Ss groups x s e) x) precisions ->
     good (fam s) /\ penalty (fam s) <= val x.
   move=> /hasP[e _]; rewrite /is_at_most; case eu: (penalty_up _ _ _ _ _ _ _ _) => [y|//]; rewrite (val_le F) => le.
   by have [g hy] := penalty_upP eu sym; split=> //; apply: le_trans hy le.
@@ -844,7 +858,7 @@ by rewrite [known T j + _]addrCA !addrA.
 Qed.
 
 Lemma worth_sound :
-  worth_test start add value plan_of (val (lower cl)) (worth kind d m ws groups lows (lower cl) plan_room).
+  worth_test start add value plan_of (val (lower cl)) (worth kind d m ws Ss groups lows (lower cl) plan_room).
 Proof.
 move=> T uT bT h G TG; case/orP: h => [/andP[le /allP h]|h].
   apply: (prior_worth uT bT TG) le => j; have := h j; rewrite mem_iota add0n ltn_ord => /(_ isT).
@@ -874,7 +888,7 @@ move=> b il; rewrite /fam nth_mkseq // mx_add mx_scale val_nat rows_at // -/(fam
 Qed.
 
 Lemma average_sound : average_test start add value plan_of (val (lower cl))
-  (average_worth kind d m ws groups lows rows (lower cl) plan_room).
+  (average_worth kind d m ws Ss groups lows rows (lower cl) plan_room).
 Proof.
 move=> T rest r uT bT r0 /andP[/andP[ur lr] h] T' G uTT bT' sub sz TG.
 have bTT : all below (T ++ T') by rewrite all_cat bT.

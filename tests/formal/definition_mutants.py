@@ -86,15 +86,27 @@ CHANGES = (
     # criteria
     ("Criteria", "invmx (prior j) + \\sum_(e in S) info e j", "prior j + \\sum_(e in S) info e j"),
     ("Criteria", "invmx (prior j) + \\sum_(e in S) info e j", "invmx (prior j)"),
-    ("Criteria", "\\sum_j weight j * \\tr (invmx (L j)).", "\\sum_j \\tr (invmx (L j))."),
-    ("Criteria", "\\sum_j weight j * \\tr (prior j).", "\\sum_j \\tr (prior j)."),
-    ("Criteria", "largest (fun j => weight j * lmax (invmx (L j)))", "largest (fun j => lmax (invmx (L j)))"),
+    (
+        "Criteria",
+        "\\sum_j weight j * \\tr (counting j (invmx (L j))).",
+        "\\sum_j \\tr (counting j (invmx (L j))).",
+    ),
+    ("Criteria", "\\sum_j weight j * \\tr (counting j (prior j)).", "\\sum_j \\tr (counting j (prior j))."),
+    ("Criteria", "\\sum_j weight j * \\tr (counting j (prior j)).", "\\sum_j weight j * \\tr (prior j)."),
+    (
+        "Criteria",
+        "largest (fun j => weight j * lmax (counting j (invmx (L j))))",
+        "largest (fun j => lmax (counting j (invmx (L j))))",
+    ),
+    ("Criteria", ":= part_of (output j) A.", ":= part_of (output j) 1%:M."),
     ("Criteria", "trace_base - trace_penalty (posterior S)", "trace_penalty (posterior S) - trace_base"),
     (
         "Quadratic",
         "Definition psd A : Prop := forall v, 0 <= form A v v.",
         "Definition psd A : Prop := forall v, 0 < form A v v.",
     ),
+    ("Quadratic", ":= C *m A *m C^T.", ":= C *m A *m A *m C^T."),
+    ("Quadratic", ":= C *m A *m C^T.", ":= C *m C^T."),
     ("Quadratic", "(lmax A <= x) <-> psd (x%:M - A)", "(lmax A <= x) <-> psd (A - x%:M)"),
     ("Logdet", "(forall x, 0 < x -> ln x <= x - 1)", "(forall x, 0 < x -> x - 1 <= ln x)"),
     ("Logdet", "\\sum_j weight j * - ln (\\det (L j))", "\\sum_j - ln (\\det (L j))"),
@@ -102,6 +114,10 @@ CHANGES = (
     # what the data of a certificate stand for
     ("Dyadic", "valZ (man x) / 2%:R ^+ N.to_nat (sc x)", "valZ (man x) * 2%:R ^+ N.to_nat (sc x)"),
     ("DyadicMatrix", "let a := maxn i j in nth d0 flat ((a * a.+1)./2 + minn i j)", "nth d0 flat (i + j)"),
+    ("Outputs", "nth d0 flat (i * columns + k).", "nth d0 flat (k * columns + i)."),
+    ("Outputs", "nth d0 flat (i * columns + k).", "nth d0 flat (i + k)."),
+    ("Outputs", "if i == k then d1 else d0.", "d1."),
+    ("Outputs", "size (nth [::] cs j) %/ d else d.", "1 else d."),
 )
 
 

@@ -23,6 +23,7 @@ from ratt_opt import (
     smallest_largest_group,
     total_curvature,
 )
+from tests.certificates.cases import full
 from tests.oracles import brute_force_worst_case
 
 FORMAL = Path(__file__).parents[2] / "formal"
@@ -100,6 +101,19 @@ def test_smallest_possible_largest_group(name):
     problem = example(name)[0]
     found = smallest_largest_group(problem.communication, problem.alpha_c, protected_links=problem.protected_links)
     assert [found.n_max] == numbers(defined(f"{name}_n_max"))
+
+
+def test_a_part_of_the_state():
+    owners, links, *_ = lists(defined("part_net"))
+    entries = np.array([full(flat, 2) for flat in lists(defined("part_infos")[len("[::") :])])
+    output = np.array(numbers(defined("part_output")), dtype=float).reshape(-1, 2)
+    objective = TraceObjective(np.eye(2)[None], entries[:, None], output=output)
+    problem = Problem(objective, np.array(owners), nx.Graph(pairs(links)), 1, 0)
+    mantissa, scale = numbers(defined("part_value"))
+    plan = problem.check_plan(numbers(defined("part_plan")))
+    optimum = exhaustive_optimum(problem)
+    for found in (brute_force_worst_case(problem, plan), optimum.lower, optimum.upper):
+        assert found == pytest.approx(mantissa / 2**scale, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["ties", "pairs"])
