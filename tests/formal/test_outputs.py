@@ -117,6 +117,26 @@ def test_the_identity_gives_the_whole_state(tmp_path):
         assert decisions([path]) == [python_decision(path)] == [0]
 
 
+def test_rows_of_zeros_change_nothing(tmp_path):
+    """So outputs may have any number of rows, another one for each target."""
+    path = tmp_path / "c.json"
+    for rng, document, _ in documents(tmp_path, range(12)):
+        problem, upper, d = document["problem"], document["upper"], document["problem"]["dimension"]
+        more = rng.integers(0, 5, len(problem["output"])).tolist()
+        if problem["objective"] == "trace":
+            wider = [
+                [
+                    np.pad(np.reshape(y, (d, -1)), ((0, 0), (0, k))).ravel().tolist()
+                    for y, k in zip(point, more, strict=True)
+                ]
+                for point in upper["points"]
+            ]
+            upper["points"] = wider
+        problem["output"] = [c + [0.0] * (k * d) for c, k in zip(problem["output"], more, strict=True)]
+        path.write_text(json.dumps(document))
+        assert decisions([path]) == [python_decision(path)] == [0]
+
+
 def test_changes_are_decided_alike(tmp_path):
     found, seen, accepted = sweep(tmp_path, range(8), 0.1)
     assert not found
