@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
-from ratt_opt.attack.dual_prices.decision import ThresholdDecision
+from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.least_sets import search
 from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.staging import without_stages

@@ -5,7 +5,10 @@
                 sum blinded(C) x_C <= alpha_s            [dual -m]
 
 HiGHS suggests ``u`` and ``m``. Rounded to integers they are a bound by themselves: of groups that cover the team each
-costs at least ``u(C) - m blinded(C)`` plus the least reduced cost of all columns.
+costs at least ``u(C) - m blinded(C)`` plus the least reduced cost of all columns. If all columns are listed
+(:func:`best_duals`), these are looked through; otherwise pricing bounds them (:class:`GroupPrices` knows some columns).
+
+Source: Johnson, Mehrotra and Nemhauser, Min-cut clustering, Mathematical Programming 62 (1993).
 """
 
 from __future__ import annotations
@@ -17,21 +20,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.columns import UNIT, Duals
+from ratt_opt.attack.pricing import DualPrices
 from ratt_opt.graph.communication import robots_of
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from ratt_opt._validation import FloatArray
+    from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.attack.columns import Column, Columns
     from ratt_opt.budget import Budget
+    from ratt_opt.graph.threat import Threat
     from ratt_opt.highs import Rows
 
-__all__ = ["DualBound", "best_duals"]
+__all__ = ["DualBound", "GroupPrices", "KnownGroup", "best_duals"]
 
 USED = 1e-7
 """Part of a column in a solution that is more than the program's tolerance."""
+MOST_ROWS = 6_000
+"""Rows before those are dropped that have slack at the last prices; more only slow the program down."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,3 +101,84 @@ def _rows(columns: Sequence[Column], robots: int) -> Rows:
         members = robots_of(column.group)
         entries.append(([*members, robots], [*[1.0] * len(members), -float(column.blinded)]))
     return rows_of(entries, -inf, np.array([column.cut for column in columns], dtype=np.float64))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownGroup:
+    """``robots`` (N,) with ``need`` of them blinded; asked for at thresholds above ``value`` only."""
+
+    robots: BoolArray
+    need: int
+    value: float
+
+
+class GroupPrices:
+    """The linear program over known groups of one threat; groups may be added and the threshold changed at any time.
+
+    Prices are of half links: if every group below the threshold has ``pi(g) <= cut(g) / 2 + mu need(g)``, an attack
+    that leaves only such groups cuts at least ``sum of pi - mu alpha_s`` links.
+    """
+
+    def __init__(self, threat: Threat) -> None:
+        self._threat, self._robots = threat, threat.graph.n_robots
+        self._adjacent = np.zeros((self._robots, self._robots), dtype=np.int64)
+        for i, j in threat.graph.links:
+            self._adjacent[i, j] = self._adjacent[j, i] = 1
+        self._groups: dict[tuple[bytes, int], KnownGroup] = {}
+        self._program: LinearProgram | None = None
+        self._threshold = -np.inf
+
+    def add(self, groups: Iterable[KnownGroup]) -> int:
+        """Add groups; returns how many are new."""
+        fresh = []
+        for group in groups:
+            key = (group.robots.tobytes(), group.need)
+            if key not in self._groups or self._groups[key].value > group.value:
+                self._groups[key] = group
+                fresh.append(group)
+        if self._program is not None:
+            self._enter(self._program, fresh)
+        return len(fresh)
+
+    def solve(self, threshold: float, seconds: float = np.inf) -> DualPrices:
+        """Best prices at which no known group of this threshold has a negative reduced cost.
+
+        After that many seconds, prices of nothing.
+        """
+        if self._program is None or threshold != self._threshold:
+            self._threshold, self._program = threshold, self._begun()
+            self._enter(self._program, self._groups.values())
+        claim, n = self._program.solve(seconds).x, self._robots
+        if len(claim) != n + 1:
+            return DualPrices(robot=np.zeros(n), blinded=0.0, links=0.0)
+        robot, blinded = claim[:n], max(float(claim[n]), 0.0)
+        if self._program.n_rows > MOST_ROWS:
+            self._forget(robot, blinded)
+        return DualPrices(robot=robot, blinded=blinded, links=float(robot.sum()) - blinded * self._threat.n_blinded)
+
+    def half_cuts(self, groups: BoolArray) -> FloatArray:
+        """(C,) half the links that separate the robots of each row of ``groups`` (C, N) from the others."""
+        return np.asarray(0.5 * ((groups @ self._adjacent) * ~groups).sum(axis=1))
+
+    def _begun(self) -> LinearProgram:
+        most = np.full(self._robots, 2.0 * len(self._threat.graph.links) + 2.0)
+        cost = np.append(np.ones(self._robots), -float(self._threat.n_blinded))
+        return LinearProgram(cost, np.append(-most, 0.0), np.append(most, most[:1]), maximise=True)
+
+    def _enter(self, program: LinearProgram, groups: Iterable[KnownGroup]) -> None:
+        below = [group for group in groups if group.value < self._threshold]
+        if below:
+            entries = []
+            for group in below:
+                members = np.flatnonzero(group.robots).tolist()
+                entries.append(([*members, self._robots], [*[1.0] * len(members), -float(group.need)]))
+            cuts = self.half_cuts(np.array([group.robots for group in below]))
+            program.add_rows(rows_of(entries, -inf, cuts))
+
+    def _forget(self, robot: FloatArray, blinded: float) -> None:
+        """Keep the groups whose reduced cost is among the least, and start afresh next time."""
+        keys, groups = list(self._groups), list(self._groups.values())
+        robots, need = np.array([group.robots for group in groups]), np.array([group.need for group in groups])
+        costs = self.half_cuts(robots) + blinded * need - robots @ robot
+        self._groups = {keys[k]: groups[k] for k in np.argsort(costs, kind="stable")[: MOST_ROWS // 2]}
+        self._program = None

@@ -10,9 +10,10 @@ links that one group may cut.
 from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, Literal
+from time import monotonic
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
@@ -36,7 +38,9 @@ MOST_PAIRED = 100
 """Robots of a team whose pairs are compared: for larger ones levels of single robots bound sets."""
 EFFORT, EFFORT_WORK = 200_000, 50_000_000
 """Robots valued at most to decide what a group needs, and multiplications for it: less than a tenth of a second."""
-FINISHED, PAUSED, FOUND = 0, 1, 2
+FINISHED = 0
+FIRST_CHUNK, GLANCE = 500, 0.02
+"""Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
 BLINDED = 2
 """What a robot is to a group; 1 is sensing, 0 outside."""
 
@@ -155,11 +159,6 @@ class DualPrices:
         factor = links / self.links
         return DualPrices(robot=self.robot * factor, blinded=self.blinded * factor, links=links)
 
-    def for_robots(self, links: float, n_blinded: int) -> DualPrices:
-        """Cheaper robots and the same price of a blinded one, claiming that many links."""
-        paid = self.blinded * n_blinded
-        return replace(self, robot=self.robot * ((links + paid) / (self.links + paid)), links=links)
-
     def lowered(self, amount: float) -> DualPrices:
         """Every robot cheaper by an amount: every group's reduced cost rises by at least as much."""
         return DualPrices(robot=self.robot - amount, blinded=self.blinded, links=self.links - amount * len(self.robot))
@@ -181,6 +180,11 @@ class Question:
     unit: int = UNIT
     effort: int | None = None
 
+    def is_same(self, other: Question) -> bool:
+        """Whether another question is this one."""
+        numbers = [(q.threshold, q.most, q.blinding, q.limit, q.unit, q.effort) for q in (self, other)]
+        return numbers[0] == numbers[1] and np.array_equal(self.duals, other.duals)
+
     def claim(self, n_blinded: int) -> int:
         """What groups that cover the team cost at least, links from both sides, if no group costs less than nothing."""
         return int(self.duals.sum()) - n_blinded * self.blinding
@@ -200,10 +204,12 @@ class Column:
 class GroupSearch:
     """A search for the groups of one question, which may be gone on with.
 
-    ``nodes`` : so far; ``first`` : (N,) robots; groups come by the first of theirs
+    ``nodes`` : so far; ``first`` : (N,) robots; groups come by the first of theirs; by default, the dearest first
     """
 
-    def __init__(self, plan: Plan, question: Question, first: IntArray) -> None:
+    def __init__(self, plan: Plan, question: Question, first: IntArray | None = None) -> None:
+        if first is None:
+            first = np.argsort(-question.duals, kind="stable").astype(np.int64)
         self._plan, self._kept = plan, (question.duals, first)  # the record has their addresses only
         self._record = plan.record(question, first)
         self.handle = function("open_pricing", c_void_p, POINTER(QuestionRecord))(byref(self._record))
@@ -227,26 +233,37 @@ class GroupSearch:
         """Searches are kept, and forgotten."""
         self.close()
 
-    def next(self, nodes: int) -> Column | Literal[False] | None:
-        """The next group; ``None`` after ``nodes`` nodes, ``False`` if there is none."""
-        group, column, progress = np.zeros(self._plan.robots, np.int8), np.zeros(4, np.int64), c_int64(0)
-        call = function("next_group_below", c_int, c_void_p, c_int64, *[c_void_p] * 3)
-        code = call(self.handle, nodes, address(group), address(column), byref(progress))
-        self.nodes = progress.value
-        if code != FOUND:
-            return False if code == FINISHED else None
-        need, found, _, cost = column.tolist()
-        return Column(robots=group > 0, blinded=group == BLINDED, need=need, found=found, cost=cost)
+    def columns(self, nodes: int, room: int, budget: Budget) -> tuple[list[Column], bool]:
+        """The next groups, at most ``room``, until ``nodes`` nodes in all; and whether there are no others.
 
-    def fill(self, nodes: int, listed: tuple[NDArray[np.int8], IntArray], count: int) -> tuple[int, bool]:
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+        table, is_complete = (np.zeros((room, self._plan.robots), np.int8), np.zeros((room, 4), np.int64)), False
+        stop, chunk, count = self.nodes + budget.nodes_left(max(nodes - self.nodes, 0)), FIRST_CHUNK, 0
+        while self.nodes < stop and count < room and not is_complete:
+            budget.check()
+            before, began = self.nodes, monotonic()
+            count, is_complete = self._fill(min(chunk, stop - before), table, count)
+            budget.nodes += self.nodes - before
+            chunk = 2 * chunk if monotonic() - began < GLANCE else max(chunk // 2, 1)
+        rows = zip(table[0][:count], table[1][:count].tolist(), strict=True)
+        columns = [
+            Column(robots=part > 0, blinded=part == BLINDED, need=need, found=found, cost=cost)
+            for part, (need, found, _, cost) in rows
+        ]
+        return columns, is_complete
+
+    def _fill(self, nodes: int, table: tuple[NDArray[np.int8], IntArray], count: int) -> tuple[int, bool]:
         """List groups from row ``count`` on for ``nodes`` nodes; the rows filled, and whether there are no others.
 
-        ``listed`` : (C, N) what robots are to each group; (C, 4) its need, robots found, links, reduced cost
+        ``table`` : (C, N) what robots are to each group; (C, 4) its need, robots found, links, reduced cost
         """
         rows, progress = c_int64(count), c_int64(0)
         call = function("list_groups_below", c_int, c_void_p, *[c_int64] * 2, *[c_void_p] * 4)
-        arrays = address(listed[0]), address(listed[1])
-        code = call(self.handle, nodes, len(listed[0]), *arrays, byref(rows), byref(progress))
+        arrays = address(table[0]), address(table[1])
+        code = call(self.handle, nodes, len(table[0]), *arrays, byref(rows), byref(progress))
         self.nodes = progress.value
         return rows.value, code == FINISHED
 

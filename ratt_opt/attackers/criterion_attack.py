@@ -7,7 +7,7 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bound
-from ratt_opt.attack.dual_prices.decision import ThresholdDecision
+from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.size_vectors.possible_sizes import LARGEST, possible_sizes_bound, unprotected_bound

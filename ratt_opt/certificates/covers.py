@@ -93,7 +93,7 @@ def _question(plan: Plan, sets: PlanSets) -> Question:
 
 def _searched_duals(plan: Plan, sets: PlanSets) -> tuple[FloatArray, float]:
     """Those with which the attacker's search refutes the threshold [links that leave a group]."""
-    from ratt_opt.attack.dual_prices.decision import ThresholdDecision
+    from ratt_opt.attack.dual_prices import ThresholdDecision
 
     seconds = seconds_left()
     budget = Budget(None if seconds == np.inf else seconds)

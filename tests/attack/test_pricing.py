@@ -11,6 +11,7 @@ import pytest
 
 from ratt_opt.attack import pricing
 from ratt_opt.attack.pricing import BLINDED, UNIT, GroupSearch, Plan, Question
+from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from tests.attack.pricing_definition import least_cost, paying_groups, reduced_cost
@@ -34,11 +35,12 @@ def question_of(threshold, prices, limit, most):
     return Question(threshold, most, robots, int(np.ceil(prices[1] * 2 * UNIT)), int(limit * 2 * UNIT))
 
 
-def groups_of(search, nodes=10**9):
-    """Every group; nodes at a time."""
-    while (column := search.next(nodes)) is not False:
-        if column is not None:
-            yield column
+def groups_of(search, nodes=10**9, room=200):
+    """Every group; nodes, and groups, at a time."""
+    is_over = False
+    while not is_over:
+        columns, is_over = search.columns(search.nodes + nodes, room, Budget())
+        yield from columns
 
 
 def cost_of(problem, column, prices):
@@ -54,16 +56,11 @@ def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes):
     threshold = problem.objective(plan) * rng.uniform(0.4, 0.9)
     question = question_of(threshold, prices, 0.5, team.most_below(threshold))
     search = GroupSearch(team, question, rng.permutation(7))
-    found = {tuple(np.flatnonzero(one.robots)): (one.need, one.found) for one in groups_of(search, nodes)}
+    columns = list(groups_of(search, nodes, [200, 3][seed % 2]))
+    found = {tuple(np.flatnonzero(one.robots)): (one.need, one.found) for one in columns}
     expected = paying_groups(problem, plan, (threshold, 0.5), prices)
     assert {group: (need, need) for group, need in expected.items()} == found
-    table = np.zeros((200, 7), np.int8), np.zeros((200, 4), np.int64)
-    with GroupSearch(team, question, rng.permutation(7)) as again:
-        count, is_over = 0, False
-        while not is_over:
-            count, is_over = again.fill(nodes, table, count)
-    assert {tuple(np.flatnonzero(row)) for row in table[0][:count]} == set(found)
-    assert count == len(found)
+    assert len(columns) == len(found)
 
 
 @pytest.mark.parametrize("seed", range(60))

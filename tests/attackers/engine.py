@@ -14,7 +14,7 @@ import numpy as np
 import ratt_opt as ro
 from ratt_opt.attack import all_sets
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.dual_prices.decision import ThresholdDecision
+from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.least_sets import search as set_search
 from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import Plan

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.dual_prices.decision import ThresholdDecision
+from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.least_sets.search import LeastSetSearch
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.size_vectors.decision import SizeDecision

@@ -165,8 +165,8 @@ int next_to_group(const Search *s, const int8_t *state) {
     return best;
 }
 
-/* Record a group of robots that are `inside` if its links and its reduced cost are within the limits: `column` as in
-   `next_group_below`. */
+/* Record a group of robots that are `inside` if its links and its reduced cost are within the limits: `group` and `column` as
+   rows of `list_groups_below`. */
 static int record(const Search *s, const uint8_t *inside, const uint8_t *blind, int need, int found, int8_t *group, int64_t *column) {
     int64_t cut = 0, cost = s->q.blinding * need;
     for (int i = 0; i < s->robots; i++) {
@@ -248,25 +248,17 @@ EXPORTED Search *open_pricing(const Pricing *question) {
     return s;
 }
 
-/* Go on for so many nodes, or to the next group: 0 all are decided, 1 paused, 2 found. `group` (robots): 0 outside, 1 sensing, 2 blinded; `column`: blinded robots at
-   least and as found, links that leave it, reduced cost. `progress`: nodes so far. */
-EXPORTED int next_group_below(Search *s, int64_t nodes, int8_t *group, int64_t *column, int64_t *progress) {
-    int code = PAUSED;
-    int64_t stop = s->visited + nodes;
-    while (code == PAUSED && s->visited < stop) code = step(s, group, column);
-    if (code == FOUND) s->depth--;
-    *progress = s->visited;
-    return code;
-}
-
-/* The same, for a list: up to `room` groups, one after the other; their number is *count. */
+/* Go on for so many nodes, until all are decided (0) or `room` groups are listed; their number is *count. `groups` (room, robots):
+   0 outside, 1 sensing, 2 blinded; `columns` (room, 4): blinded robots at least and as found, links that leave it, reduced
+   cost. `progress`: nodes so far. */
 EXPORTED int list_groups_below(Search *s, int64_t nodes, int64_t room, int8_t *groups, int64_t *columns, int64_t *count, int64_t *progress) {
     int code = PAUSED;
     int64_t stop = s->visited + nodes;
     while (code != FINISHED && s->visited < stop && *count < room) {
-        code = next_group_below(s, stop - s->visited, groups + *count * s->robots, columns + 4 * *count, progress);
-        *count += code == FOUND;
+        code = step(s, groups + *count * s->robots, columns + 4 * *count);
+        if (code == FOUND) s->depth--, ++*count;
     }
+    *progress = s->visited;
     return code == FINISHED ? FINISHED : PAUSED;
 }
 

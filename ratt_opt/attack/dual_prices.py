@@ -1,37 +1,32 @@
-"""Is there an attack worth less than a threshold? By prices, enumeration and covers.
+"""Is there an attack worth less than a threshold? By dual prices, pricing, and exact covers.
 
-1. Prices (``program.py``) that claim more links than the budget refute the threshold once a search over the robots
-   that sense or are inside (``column_search.py``) has found no group that pays them; groups that do are added to the
+1. A linear program over known groups suggests dual prices of robots and of blinded ones (``master.py``).
+2. If they claim more links than the budget, they refute the threshold once no group has a negative reduced cost
+   (``pricing.py``). They are taken in proportion, so that they claim little more. Groups that have one are added to the
    program.
-2. Prices that claim ``gap`` links less leave the groups of reduced cost at most ``gap``: they are listed, and the
-   partitions into them tried (``exact_cover.py``). Either one is an attack, or the threshold is refuted.
+3. Prices that claim ``gap`` links less leave groups of reduced cost at most ``gap``: they are listed, and exact covers
+   by them searched (``exact_cover.py``). Either one is an attack, or the threshold is refuted.
 
-Source: for the second step, Baldacci, Christofides and Mingozzi, Mathematical Programming 115 (2008).
+Source: for the last step, Baldacci, Christofides and Mingozzi, Mathematical Programming 115 (2008).
 """
 
 from __future__ import annotations
 
 from ctypes import c_uint64
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attack.annealing import Partition
-from ratt_opt.attack.dual_prices.column_search import ColumnSearch, question_of
-from ratt_opt.attack.dual_prices.program import GroupPrices, KnownGroup
 from ratt_opt.attack.exact_cover import ExactCover, packed
-from ratt_opt.attack.pricing import UNIT, DualPrices
+from ratt_opt.attack.master import GroupPrices, KnownGroup
+from ratt_opt.attack.pricing import UNIT, GroupSearch, Question
 from ratt_opt.attack.threshold_search import Answer, Threshold
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ratt_opt.attack.pricing import Column, Plan, Question
+    from ratt_opt.attack.pricing import Column, DualPrices, Plan
     from ratt_opt.budget import Budget
-
-    _Choice = Callable[[float, float, float], DualPrices | None]
 
 __all__ = ["ThresholdDecision"]
 
@@ -43,15 +38,11 @@ TOLERANCE = 1e-6
 """Reduced costs below minus this count as negative: above what the linear program leaves of its rows, and a team's sum
 stays well below MARGIN."""
 
-RESERVE = 0.3
-"""Share of the links that could be claimed beyond the budget that prices claim, too, to be lowered for groups that pay.
-Measured at hubs of 30 robots (10, 31) and 97 % of the attack: two searches instead of five, of 60,000 nodes."""
-
 LOWERED = 0.003
 """By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
 FIRST_ATTEMPT, LONGER = 10_000, 3
-"""Nodes of the first search at each of a few prices, and their growth while none of them ends."""
+"""Nodes of the first search for a column, and their growth while it does not end."""
 
 ROUNDED = 2
 """Units of duals by which rounding may leave the cost of a group below zero."""
@@ -67,6 +58,9 @@ a threshold at 94 % of the attack one of 800 nodes, which take more than 25,000 
 ROOM, NEW_GROUPS, LISTING = 100_000, 100, 2
 """Groups listed for covers; groups added to the program at a time; nodes that one of a listing counts for."""
 
+HALF = 2 * UNIT
+"""Dual prices are about half links: each link that is cut leaves two groups."""
+
 
 class ThresholdDecision:
     """Decides thresholds for one plan; what is learned about groups serves the next threshold."""
@@ -74,10 +68,10 @@ class ThresholdDecision:
     def __init__(self, plan: Plan) -> None:
         self._plan, self._links, self.threat = plan, plan.links, plan.threat
         self.prices = GroupPrices(plan.threat)
-        self._search = ColumnSearch(plan)
+        self._begun: tuple[Question, GroupSearch] | None = None
+        """A question that was asked in vain, and its search, which goes on if it is asked again."""
         self._random = c_uint64(1)
         self._attempt = FIRST_ATTEMPT
-        self._choices: list[_Choice] = [self.prices.slackest, partial(self.prices.dearest, reserve=RESERVE)]
         for i in range(plan.robots):
             alone = np.arange(plan.robots) == i
             self.prices.add([KnownGroup(robots=alone, need=0, value=float(plan.team.single[i]))])
@@ -104,48 +98,20 @@ class ThresholdDecision:
         OutOfBudget : the time is up.
         """
         budget.check()
-        size, spent = self._plan.most_below(threshold), budget.nodes
+        size, spent, links = self._plan.most_below(threshold), budget.nodes, self.threat.alpha_c + MARGIN
         self._attempt = max(self._attempt // LONGER, FIRST_ATTEMPT)
         while budget.nodes - spent < nodes:
             found = self._settled(threshold, size, budget)
-            if found.links > self.threat.alpha_c + MARGIN:
-                answer = self._refute(threshold, size, budget)
-                if answer is not None:
-                    return answer
-                continue
-            answer = self._answered(found, (threshold, size, -LOWERED), budget)
+            is_enough = found.links > links
+            prices = found.scaled(links) if is_enough else found
+            answer = self._answered(prices, (threshold, size, -TOLERANCE if is_enough else -LOWERED), budget)
             if answer is None:
                 self._attempt *= LONGER
-            elif answer.verdict is Threshold.REFUTED:
-                assert answer.prices is not None
-                return self._cover(answer.prices.lowered(LOWERED), threshold, size, budget, nodes)
-            elif answer.verdict is Threshold.OPEN:
-                break
+            elif answer.verdict is Threshold.REFUTED and not is_enough:
+                return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
+            elif answer.verdict is not Threshold.REACHED:
+                return answer
         return Answer(verdict=Threshold.OPEN)
-
-    def _refute(self, threshold: float, size: int, budget: Budget) -> Answer | None:
-        """Ask whether no group pays prices that claim more than the budget; ``None`` if more is to be done.
-
-        The prices furthest below what known groups cost prune best, or those with dear blinded robots. Where they do
-        not end, others may: all in turn, and ever longer, first those that ended last.
-        """
-        links, asked = self.threat.alpha_c + MARGIN, (threshold, size, -TOLERANCE)
-        for choose in self._choices.copy():
-            while (chosen := choose(threshold, links, budget.seconds_left)) is not None:
-                budget.check()
-                answer = self._answered(chosen, asked, budget)
-                if answer is None:
-                    break
-                if answer.verdict is not Threshold.REACHED:
-                    self._choices.remove(choose)
-                    self._choices.insert(0, choose)
-                    return answer
-        found = self._settled(threshold, size, budget)
-        if found.links <= links:
-            return None
-        answer = self._answered(found.scaled(links + RESERVE * (found.links - links)), asked, budget)
-        self._attempt *= LONGER
-        return None if answer is None or answer.verdict is Threshold.REACHED else answer
 
     def _answered(self, prices: DualPrices, asked: tuple[float, int, float], budget: Budget) -> Answer | None:
         """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
@@ -153,12 +119,23 @@ class ThresholdDecision:
         if self.prices.add(self._cheap(prices, threshold, size, budget)):
             return Answer(verdict=Threshold.REACHED)
         question = question_of(prices, threshold, size, limit)
-        found = self._search.find(question, budget, nodes=self._attempt, room=NEW_GROUPS)
-        if found.groups:
-            return Answer(verdict=Threshold.REACHED if self.prices.add(found.groups) else Threshold.OPEN)
-        if not found.is_complete or (prices.links > self.threat.alpha_c and not self._is_too_much(prices, question)):
+        columns, is_complete = self._columns(question, budget)
+        if columns:
+            below = float(np.nextafter(threshold, -np.inf))
+            found = [KnownGroup(robots=one.robots, need=one.found, value=below) for one in columns]
+            return Answer(verdict=Threshold.REACHED if self.prices.add(found) else Threshold.OPEN)
+        if not is_complete or (prices.links > self.threat.alpha_c and not self._is_too_much(prices, question)):
             return None
         return Answer(verdict=Threshold.REFUTED, prices=prices)
+
+    def _columns(self, question: Question, budget: Budget) -> tuple[list[Column], bool]:
+        """Some groups of a question, and whether there are no others; if it was asked in vain before, it goes on."""
+        begun, self._begun = self._begun, None
+        search = begun[1] if begun is not None and begun[0].is_same(question) else GroupSearch(self._plan, question)
+        columns, is_complete = search.columns(self._attempt, NEW_GROUPS, budget)
+        if not columns:
+            self._begun = question, search
+        return columns, is_complete
 
     def _is_too_much(self, prices: DualPrices, question: Question) -> bool:
         """Whether prices that no group pays claim more links than the budget, as integers."""
@@ -197,11 +174,11 @@ class ThresholdDecision:
         gap = 2 * self.threat.alpha_c * UNIT - question.claim(self.threat.n_blinded)
         gap += ROUNDED * self._plan.robots
         question = replace(question, limit=gap + 1)
-        listed = self._search.listed(question, budget, nodes // LISTING, ROOM)
-        if not listed.is_complete:
+        with GroupSearch(self._plan, question) as search:
+            columns, is_complete = search.columns(nodes // LISTING, ROOM, budget)
+        if not is_complete:
             return Answer(verdict=Threshold.OPEN)
-        columns = sorted(listed.columns, key=lambda column: column.cost)
-        members = self._covered(columns, gap, budget)
+        members = self._covered(sorted(columns, key=lambda column: column.cost), gap, budget)
         if not members:
             return Answer(verdict=Threshold.REFUTED, prices=prices)
         if any(column.need < column.found for column in members):
@@ -222,3 +199,9 @@ class ThresholdDecision:
         most = gap, self.threat.n_blinded, 2 * self.threat.alpha_c
         cover = ExactCover(self._plan.robots, packed(robots), np.column_stack([costs, cuts]), most)
         return [columns[k] for k in cover.found(budget)]
+
+
+def question_of(prices: DualPrices, threshold: float, most: int, limit: float) -> Question:
+    """The question for groups of reduced cost less than ``limit`` [links]; rounding makes every group cost no less."""
+    duals = np.floor(prices.robot * HALF).astype(np.int64)
+    return Question(threshold, most, duals, int(np.ceil(prices.blinded * HALF)), int(np.floor(limit * HALF)))

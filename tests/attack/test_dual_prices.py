@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.dual_prices.decision import ThresholdDecision
+from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.budget import Budget
 from tests.attackers.engine import Search, searched
