@@ -16,8 +16,8 @@ import numpy as np
 from analysis.tables import print_table
 from ratt_opt import random_scenario, solve_maxmin
 from ratt_opt.bounds.cuts import combined_bound, tangent_cut
+from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, WinnerBranch
-from ratt_opt.solvers.maxmin.task import with_choice
 
 if TYPE_CHECKING:
     from ratt_opt import MaxMinResult, Problem, Scenario

@@ -13,13 +13,13 @@ from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin import descent
-from ratt_opt.solvers.maxmin.backjumps import Backjumps
-from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
-from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
-from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups
-from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
-from ratt_opt.solvers.maxmin.plans.adversary import LastingAttacks
-from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
+from ratt_opt.solvers.maxmin.adversary import LastingAttacks
+from ratt_opt.solvers.maxmin.covers.search import CoverSearch
+from ratt_opt.solvers.maxmin.frontier import Backjumps
+from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
+from ratt_opt.solvers.maxmin.node_attacks import NodeAttacks
+from ratt_opt.solvers.maxmin.small_groups import SmallGroups
+from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

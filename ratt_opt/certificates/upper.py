@@ -11,8 +11,7 @@ from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, Margin
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.maxmin.covers.cover import Cover
-    from ratt_opt.solvers.maxmin.proof import Node, TangentCut
+    from ratt_opt.solvers.maxmin.proof import Cover, Node, TangentCut
 
 __all__ = ["upper_record"]
 

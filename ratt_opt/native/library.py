@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import DTypeLike, NDArray
 
-__all__ = ["address", "checked", "function"]
+__all__ = ["address", "check_numbers", "checked", "function"]
 
 ANYTHING = ctypes.c_char * 0
 REMEDY = "install the package with pip, or, in a checkout, run python hatch_build.py"
@@ -55,6 +55,15 @@ def checked(argument: str, array: Any, kind: DTypeLike, shape: Sequence[int], *,
     if not array.flags.c_contiguous or (written and not array.flags.writeable):
         raise InputError(argument, f"must be contiguous{' and writable' if written else ''}", "another layout")
     return array
+
+
+def check_numbers(argument: str, numbers: NDArray[Any], least: int, count: int) -> None:
+    """Check that an array holds numbers from ``least`` to ``count - 1``.
+
+    Raises ``InputError`` : it does not.
+    """
+    if np.any((numbers < least) | (numbers >= count)):
+        raise InputError(argument, f"must be in [{least}, {count - 1}]", numbers)
 
 
 def address(array: Any) -> int:

@@ -1,9 +1,15 @@
 """The exact max-min search: the plan of largest worst-case value, and a proof that none is better.
 
-Open ``solve.py`` first. ``upper_ends.py`` lets the searches for the upper end take turns. One is ``descent.py``, which
-searches tree after tree, and ``search.py``, the loop over the nodes of one. If robots see few targets there are
-``covers/`` and ``marginals/``, too, both by ``levels/``. ``frontier.py`` holds the nodes and the closing rule,
-``turns.py`` says when to stop for a proof, ``plans/`` the lower end, ``relaxed/`` and ``groups/`` the upper end,
-``division.py`` what a node is divided by, ``backjumps.py`` which divisions were needless. ``task.py`` is what all
-share; the tree of ``proof.py`` grows and becomes a proof.
+Open ``solve.py`` first. ``upper_ends.py`` lets the searches for the upper end take turns.
+
+- Concave relaxations: ``descent.py`` searches tree after tree; ``search.py`` is the loop over the nodes of one.
+  ``frontier.py`` holds the nodes and the closing rule, ``relaxation.py`` the linear program and its cuts,
+  ``winners.py`` which group of an outcome counts, ``small_groups.py`` what small ones can reach, ``division.py`` what
+  a node is divided by.
+- Searches in depth, if robots see few targets: ``levels.py``, by ``covers/`` or by marginal gains
+  (``marginal_search.py``, ``marginal_tables.py``).
+
+The lower end: ``outcome_pool.py`` keeps what attacks leave, ``candidates.py`` ranks and improves plans by that,
+``adversary.py`` attacks them, ``incumbent.py`` has the best one proved. ``elements.py`` is what plans choose from;
+the tree of ``proof.py`` grows and becomes a proof.
 """

@@ -5,7 +5,7 @@ groups win. Children of an :class:`ElementBranch` partition one robot's remainin
 :class:`WinnerBranch` say which group of one attack attains the team value, one child a group. At a leaf, a cut
 on the only group of an attack, or on the group declared to win, bounds the team value under that attack and so the
 worst case; the leaf's convex combination of such cuts bounds every plan that remains. A :class:`CoverLeaf` combines
-conditions on plans that are worth more (``covers/cover.py``); no plan that remains meets the combination. A
+conditions on plans that are worth more (``covers/pool.py``); no plan that remains meets the combination. A
 :class:`MarginalLeaf` adds up what robots can gain under one attack.
 """
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack
-    from ratt_opt.solvers.maxmin.covers.cover import Cover
-    from ratt_opt.solvers.maxmin.task import Choices, Task
+    from ratt_opt.solvers.maxmin.elements import Choices, Task
 
 __all__ = [
+    "Cover",
     "CoverLeaf",
     "ElementBranch",
     "Leaf",
@@ -51,6 +51,19 @@ class TangentCut(ByValue):
     group: tuple[int, ...]
     point: FloatArray
     target: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Cover(ByValue):
+    """What one attack cannot afford to leave; ``covers/pool.py`` derives what it says of plans.
+
+    ``attack`` : on links only; ``left_out`` : elements, ascending; ``points`` : for each group that the attack leaves,
+    by lowest robot, the posterior information (M, d, d) where its tangent touches
+    """
+
+    attack: Attack
+    left_out: tuple[int, ...]
+    points: tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,7 +157,7 @@ class TreeNode:
     ``choices`` : remaining elements per robot (one of each class of equal elements); ``winners`` : outcome ->
     declared group; ``bound`` : proved for its plans by ``leaf``; ``split`` : what it was divided by, once it was.
     ``relies_on`` : outcomes whose cuts its proof uses, once all below is closed; ``parent`` : the node that was
-    divided, if any; ``is_dropped`` : whether it is no longer in the tree (``backjumps.py``).
+    divided, if any; ``is_dropped`` : whether it is no longer in the tree (``frontier.py``).
     """
 
     choices: Choices

@@ -15,26 +15,23 @@ import numpy as np
 
 from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.budget import Stop
-from ratt_opt.solvers.maxmin.backjumps import Backjumps
-from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division
-from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
-from ratt_opt.solvers.maxmin.groups.closed_group import GroupProofs
-from ratt_opt.solvers.maxmin.groups.small_groups import SmallGroups, SmallTables
-from ratt_opt.solvers.maxmin.groups.winners import WinnerDivision, Winners
-from ratt_opt.solvers.maxmin.plans.node_attacks import NodeAttacks
+from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division, WinnerDivision
+from ratt_opt.solvers.maxmin.elements import with_choice
+from ratt_opt.solvers.maxmin.frontier import Backjumps, ClosingRule, Frontier
+from ratt_opt.solvers.maxmin.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
-from ratt_opt.solvers.maxmin.relaxed.cut_rounds import CUTS_A_ROUND, CutRounds
-from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
-from ratt_opt.solvers.maxmin.task import with_choice
+from ratt_opt.solvers.maxmin.relaxation import CUTS_A_ROUND, CutRounds, CutStore
+from ratt_opt.solvers.maxmin.small_groups import SmallGroups, SmallTables
+from ratt_opt.solvers.maxmin.winners import GroupProofs, Winners
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.elements import Task
+    from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.relaxed.node_program import RelaxedPlan
-    from ratt_opt.solvers.maxmin.task import Task
+    from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
     from ratt_opt.solvers.maxmin.turns import Turns
 
     Progress = Callable[[int, float, float], None] | None

@@ -19,12 +19,11 @@ from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.maxmin.elements import Task
+from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
-from ratt_opt.solvers.maxmin.plans.incumbent import PROVED, Incumbent
-from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.plans.ties import break_ties
+from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import Known
-from ratt_opt.solvers.maxmin.task import Task
 from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
 from ratt_opt.solvers.maxmin.warm_start import WarmStart

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt.budget import Budget
-    from ratt_opt.solvers.maxmin.plans.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.incumbent import Incumbent
 
 __all__ = ["Turns", "TurnsUntil"]
 

@@ -10,14 +10,14 @@ from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
+from ratt_opt.solvers.maxmin.covers.search import CoverSearch
 from ratt_opt.solvers.maxmin.descent import Descent
-from ratt_opt.solvers.maxmin.levels.elements import Elements
-from ratt_opt.solvers.maxmin.marginals.marginal_search import MarginalSearch
+from ratt_opt.solvers.maxmin.elements import Elements
+from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
 
 if TYPE_CHECKING:
-    from ratt_opt.solvers.maxmin.levels.by_levels import SearchByLevels
+    from ratt_opt.solvers.maxmin.levels import SearchByLevels
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.search import Known, Progress
     from ratt_opt.solvers.maxmin.turns import Turns

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.maxmin.plans.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
     from ratt_opt.solvers.maxmin.proof import TangentCut, UpperProof
-    from ratt_opt.solvers.maxmin.relaxed.cut_store import CutStore
+    from ratt_opt.solvers.maxmin.relaxation import CutStore
 
 __all__ = ["WarmStart"]
 

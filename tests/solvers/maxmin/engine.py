@@ -11,11 +11,17 @@ from typing import TYPE_CHECKING
 from ratt_opt import Attack, Stop
 from ratt_opt.solvers import exhaustive, ratt
 from ratt_opt.solvers.by_values import plan_tree
-from ratt_opt.solvers.maxmin import descent, solve, upper_ends
-from ratt_opt.solvers.maxmin.covers import cover_search, dive
-from ratt_opt.solvers.maxmin.groups import small_groups
-from ratt_opt.solvers.maxmin.marginals import diving, marginal_search
-from ratt_opt.solvers.maxmin.plans import adversary, outcome_pool
+from ratt_opt.solvers.maxmin import (
+    adversary,
+    descent,
+    marginal_search,
+    outcome_pool,
+    small_groups,
+    solve,
+    upper_ends,
+)
+from ratt_opt.solvers.maxmin.covers import dive
+from ratt_opt.solvers.maxmin.covers import search as cover_search
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
 
 if TYPE_CHECKING:
@@ -82,7 +88,7 @@ def covers(**limits: int) -> Way:
 
 def marginals(**limits: int) -> Way:
     """Limits of the search by marginal gains, by their names in small letters."""
-    return {(diving, name.upper()): value for name, value in limits.items()}
+    return {(marginal_search, name.upper()): value for name, value in limits.items()}
 
 
 def open_nodes(most: int) -> Way:

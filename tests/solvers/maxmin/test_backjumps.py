@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, random_scenario, solve_maxmin
-from ratt_opt.solvers.maxmin.backjumps import Backjumps
+from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.proof import nodes_below
 from tests.solvers.maxmin.engine import LISTED, NO_GROUPS, TREES_SOON, UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper

@@ -9,10 +9,12 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked, function
-from ratt_opt.solvers.maxmin.levels.packed import ElementsRecord, PackedElements
+from ratt_opt.solvers.maxmin.elements import ElementsRecord, PackedElements
 
 if TYPE_CHECKING:
     from typing import Any
+
+    from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
@@ -80,6 +82,17 @@ class Choices:
         enough = min(problem.alpha_s, problem.threat.n_blinded) + 1
         elements = PackedElements.of(objective, objective.information, sees)
         return cls(elements, np.array(problem.robot, np.int64), safe, enough)
+
+    def masks_of(self, chosen: BoolArray) -> NDArray[np.uint64]:
+        """(N,) masks of some elements (E,)."""
+        masks = np.zeros(len(self.safe), np.uint64)
+        bits = np.uint64(1) << self.bit[chosen].astype(np.uint64)
+        np.bitwise_or.at(masks, self.owner[chosen], bits)
+        return masks
+
+    def in_masks(self, masks: NDArray[np.uint64]) -> BoolArray:
+        """(E,) which elements masks (N,) hold."""
+        return np.asarray(masks[self.owner] >> self.bit.astype(np.uint64) & np.uint64(1), dtype=np.bool_)
 
     @property
     def reference(self) -> Any:

@@ -2,26 +2,106 @@
 
 from __future__ import annotations
 
-from ctypes import byref, c_double, c_int, c_int64, c_void_p
-from typing import TYPE_CHECKING
+from ctypes import Structure, byref, c_double, c_int, c_int64, c_void_p
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.native.library import function
-from ratt_opt.solvers.maxmin.covers.tables import Record, Stack
-from ratt_opt.solvers.maxmin.levels.level_search import Outcome
+from ratt_opt.native.library import address, function
+from ratt_opt.solvers.maxmin.levels import Outcome
+from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.solvers.maxmin.covers.choices import Choices
+    from ratt_opt.solvers.maxmin.covers.program import CoverSums
     from ratt_opt.solvers.maxmin.covers.separation import Separation
-    from ratt_opt.solvers.maxmin.covers.sums import CoverSums
+    from ratt_opt.solvers.maxmin.elements import Elements
+    from ratt_opt.solvers.maxmin.proof import Cover
 
-__all__ = ["Dive"]
+__all__ = ["BY_COVER", "BY_SUM", "Dive", "DiveProof"]
 
+BY_COVER, BY_SUM, TRIED = 0, 1, 2
+"""What forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
+NODE = np.dtype([(name, np.int64) for name in ("kind", "subject", "robot", "place", "next")])
+STEP = np.dtype([*((name, np.int64) for name in ("kind", "what", "robot")), ("gone", np.uint64)])
 FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
 """Nodes of a record: it grows, to 160 MB at most."""
 MOST_WAYS = 10
 """Partitions that are tried at a node, those that last led to a dead end first."""
+
+
+class StackRecord(Structure):
+    """``Stack`` of ``native/src/covers.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("frame", "count")),
+        *((name, c_void_p) for name in ("start", "allowed", "strongest", "fixed", "first", "steps", "reasons")),
+        *((name, c_void_p) for name in ("since", "touched", "activity")),
+    ]
+
+
+class Stack:
+    """Frames and steps, at first one frame in which everything is allowed.
+
+    ``allowed`` : (N + 1, N) masks of the elements that are allowed in each frame
+    """
+
+    def __init__(self, choices: Choices) -> None:
+        n, e = choices.element.shape[0], choices.elements.count
+        self.allowed, strongest = np.zeros((n + 1, n), np.uint64), np.zeros((n + 1, *choices.strongest.shape))
+        self.allowed[0], strongest[0] = choices.masks, choices.strongest
+        self._arrays = (
+            choices.masks,
+            self.allowed,
+            strongest,
+            np.zeros(n + 1, np.int64),
+            np.zeros(n + 2, np.int64),
+            np.zeros(e + 1, STEP),
+            np.zeros((e + 1, n), np.uint64),
+            np.full(e, -1, np.int64),
+            np.zeros((n + 1, n), np.int64),
+            np.zeros(n),
+        )
+        self.record = StackRecord(0, 0, *map(address, self._arrays))
+
+    @property
+    def frame(self) -> int:
+        """The present one."""
+        return int(self.record.frame)
+
+
+class NodesRecord(Structure):
+    """``Record`` of ``native/src/covers.h``."""
+
+    _fields_: ClassVar = [("size", c_int64), ("room", c_int64), ("nodes", c_void_p)]
+
+
+class Record:
+    """The nodes of a search: the last one is the root.
+
+    A node's subject is a cover, a sum, or the node of the dead end. What ends a frame has robot -1.
+    """
+
+    def __init__(self, room: int) -> None:
+        self._nodes = np.zeros(room, NODE)
+        self.record = NodesRecord(0, room, address(self._nodes))
+
+    @property
+    def size(self) -> int:
+        """How many there are."""
+        return int(self.record.size)
+
+    @property
+    def nodes(self) -> IntArray:
+        """(R, 5) kind, its subject, robot, element's place, the next node."""
+        return self._nodes[: self.size].view(np.int64).reshape(-1, 5)
+
+    def make_room(self, more: int) -> None:
+        """Grow as long as there is no room for ``more`` nodes and one."""
+        while self.size + more >= len(self._nodes):
+            self._nodes = np.concatenate([self._nodes, np.zeros_like(self._nodes)])
+        self.record = NodesRecord(self.size, len(self._nodes), address(self._nodes))
 
 
 class Dive:
@@ -44,10 +124,9 @@ class Dive:
     def run(self, level: float, nodes: int) -> Outcome:
         """Search on; how that ended. Makes room in what is full first."""
         pool, ways, sums = self._separation.pool, self._separation.ways(), self._sums.rows()
-        if len(pool) == pool.covers.room or ways.widest > pool.covers.groups:
-            pool.grow(ways.widest)
+        pool.make_room(ways.widest)
         self.record.make_room(self._choices.elements.count + 1)
-        tables = self._choices, ways, pool.covers, sums, self._stack, self.record
+        tables = self._choices, ways, pool, sums, self._stack, self.record
         call = function("dive_by_covers", c_int, *[c_void_p] * 6, c_double, *[c_int64] * 2, c_void_p)
         outcome = c_int(Outcome.SPENT)
         if call(*(byref(table.record) for table in tables), level, nodes, MOST_WAYS, byref(outcome)):
@@ -56,10 +135,90 @@ class Dive:
 
     def allowed(self, frame: int) -> BoolArray:
         """(E,) elements that are allowed in a frame."""
-        masks = self._stack.allowed[frame][self._choices.owner]
-        return np.asarray(masks >> self._choices.bit.astype(np.uint64) & np.uint64(1), dtype=np.bool_)
+        return self._choices.in_masks(self._stack.allowed[frame])
 
     def plan(self) -> IntArray:
         """(N,) the plan that is left."""
         masks, element = self._stack.allowed[self.frame], self._choices.element
         return np.array([element[i, int(mask).bit_length() - 1] for i, mask in enumerate(masks)])
+
+
+class DiveProof:
+    """A record with the covers and sums that it names, over the elements of the search.
+
+    ``nodes`` : (R, 5), the last is the root; ``left_out`` : of each cover in use, masks (N,); ``terms`` : (R', E)
+    """
+
+    def __init__(
+        self,
+        elements: Elements,
+        nodes: IntArray,
+        *,
+        covers: dict[int, Cover],
+        left_out: dict[int, list[int]],
+        sums: list[CoverLeaf],
+        terms: FloatArray,
+    ) -> None:
+        self._elements, self._nodes, self._sums, self._terms = elements, nodes, sums, terms
+        self._covers, self._left_out = covers, left_out
+        self._branches: dict[tuple[int, int, int], ElementBranch] = {}
+        self._leaves: dict[int, CoverLeaf] = {}
+
+    def written(self) -> UpperProof:
+        """The tree in preorder, with the covers that it uses."""
+        choices = self._elements.problem.choices
+        stack = [(len(self._nodes) - 1, [(1 << len(choice)) - 1 for choice in choices])]
+        tree: list[CoverLeaf | ElementBranch] = []
+        while stack:
+            number, allowed = stack.pop()
+            kind, subject, robot, place, following = self._nodes[number if number >= 0 else -1 - number].tolist()
+            if robot < 0 or number < 0:  # what ends a frame, or what a step forbids
+                tree.append(self._leaf(kind, subject))
+                continue
+            gone = allowed[robot] & self._gone(kind, subject, robot, place)
+            rest = allowed[robot] & ~gone
+            below = {mask: [*allowed[:robot], mask, *allowed[robot + 1 :]] for mask in (gone, rest) if mask}
+            if len(below) == 2:
+                below = dict(sorted(below.items(), key=lambda item: item[0].bit_count()))
+                tree.append(self._branch(robot, *below))
+            for mask, own in reversed(below.items()):
+                stack.append((following if mask == rest else subject if kind == TRIED else -1 - number, own))
+        return self._numbered(tree)
+
+    def _gone(self, kind: int, subject: int, robot: int, place: int) -> int:
+        """The mask of a robot's elements that one step forbids, whatever was forbidden before."""
+        if kind == TRIED:
+            return 1 << place
+        if kind == BY_COVER:
+            return ~self._left_out[subject][robot]
+        terms = self._terms[subject][self._elements.problem.choices[robot]]
+        return sum(1 << p for p in np.flatnonzero(terms <= terms[place]).tolist())
+
+    def _leaf(self, kind: int, subject: int) -> CoverLeaf:
+        if kind == BY_SUM:
+            return self._sums[subject]
+        if subject not in self._leaves:
+            self._leaves[subject] = CoverLeaf(covers=(subject,), weights=(1.0,))
+        return self._leaves[subject]
+
+    def _branch(self, robot: int, first: int, second: int) -> ElementBranch:
+        key = robot, first, second
+        if key not in self._branches:
+            choice = self._elements.problem.choices[robot]
+            parts = tuple(
+                self._elements.members(choice[[p for p in range(len(choice)) if mask >> p & 1]])
+                for mask in (first, second)
+            )
+            self._branches[key] = ElementBranch(robot=robot, parts=parts)
+        return self._branches[key]
+
+    def _numbered(self, tree: list[CoverLeaf | ElementBranch]) -> UpperProof:
+        """The proof, its covers numbered anew."""
+        used = sorted({k for node in tree if isinstance(node, CoverLeaf) for k in node.covers})
+        number = {k: n for n, k in enumerate(used)}
+        leaves: dict[CoverLeaf, CoverLeaf] = {}
+        for node in tree:
+            if isinstance(node, CoverLeaf) and node not in leaves:
+                leaves[node] = CoverLeaf(covers=tuple(number[k] for k in node.covers), weights=node.weights)
+        nodes = tuple(leaves[node] if isinstance(node, CoverLeaf) else node for node in tree)
+        return UpperProof(attacks=(), cuts=(), tree=nodes, covers=tuple(self._covers[k] for k in used))

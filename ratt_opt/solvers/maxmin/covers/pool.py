@@ -1,82 +1,137 @@
-"""Covers found so far, in arrays that grow: compiled loops read them and add to them."""
+"""Covers: conditions that every plan worth more than a level meets, and those found so far.
+
+Cut some links. Of each group that is left keep elements such that no choice of kept ones is worth more than the level.
+Take a plan of which at most ``alpha_s`` robots choose an element that is left out. Blind these robots: what the
+others choose is kept, and robots that are blinded add nothing, so no group is worth more than the level. Hence
+
+    a plan worth more has at least ``alpha_s + 1`` robots with an element that is left out.
+
+A robot that is protected cannot be blinded, so one such robot with an element left out is enough: its elements count
+``alpha_s + 1`` times. That a group is worth no more is shown by one tangent: a constant and, robot by robot, the
+largest score of a kept element, or 0.
+
+Source: combinatorial Benders cuts (Codato and Fischetti 2006), lifted.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from ctypes import Structure, c_int64, c_void_p
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.covers.tables import Covers
+from ratt_opt.bounds.cuts import ROUNDING, tangent_cut
+from ratt_opt.native.library import address
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
+    from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.covers.choices import Choices
+    from ratt_opt.solvers.maxmin.proof import Cover
 
-__all__ = ["CoverPool"]
+__all__ = ["CoverPool", "cover_bound"]
 
 FIRST_ROOM, GROWTH = 256, 2
 MOST_VIOLATED = 8
 NEGLIGIBLE = 1e-6
 
 
+def cover_bound(problem: Problem, cover: Cover) -> float:
+    """No plan that fails the cover is worth more under the attacks that it stands for."""
+    kept = np.ones(problem.objective.n, dtype=np.bool_)
+    kept[list(cover.left_out)] = False
+    groups = sorted(map(sorted, problem.groups_left(cover.attack)))
+    return max(_kept_bound(problem, group, kept, point) for group, point in zip(groups, cover.points, strict=True))
+
+
+def _kept_bound(problem: Problem, group: list[int], kept: BoolArray, point: FloatArray) -> float:
+    """No choice of kept elements of a group is worth more."""
+    cut = tangent_cut(problem, tuple(group), point)
+    largest = np.zeros(problem.n_robots)
+    np.maximum.at(largest, problem.robot[kept], cut.scores[kept])
+    total = float(largest.sum())
+    return cut.constant + total + ROUNDING * (abs(cut.constant) + total)
+
+
+class CoversRecord(Structure):
+    """``Covers`` of ``native/src/covers.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("size", "room", "groups")),
+        *((name, c_void_p) for name in ("left_out", "partition", "sums", "level")),
+    ]
+
+
 class CoverPool:
-    """Covers over the elements of one problem."""
+    """Covers over the elements of one problem, in arrays that grow: compiled loops read them and add to them.
+
+    ``masks`` : (K, N) of the elements left out; ``partition`` : (K,) its number
+    ``sums`` : (K, S, M, T) posterior information at which the tangents of the partition's groups touch
+    ``level`` : (K,) the least level that the cover is true for
+    """
 
     def __init__(self, choices: Choices) -> None:
         self._choices = choices
         self._known: dict[tuple[int, bytes], int] = {}
         self._counted = 0
         self._dense = np.zeros((0, choices.elements.count))
-        self.covers = Covers(choices, FIRST_ROOM, 1)
+        self._hold(FIRST_ROOM, 1)
+
+    def _hold(self, room: int, groups: int) -> None:
+        """Begin empty arrays for that many covers, of partitions into that many groups at most."""
+        self.masks = np.zeros((room, len(self._choices.safe)), np.uint64)
+        self.partition, self.level = np.zeros(room, np.int64), np.zeros(room)
+        self.sums = np.zeros((room, groups, *self._choices.elements.prior.shape))
+        self._arrays = self.masks, self.partition, self.sums, self.level
+        self.record = CoversRecord(0, room, groups, *map(address, self._arrays))
 
     def __len__(self) -> int:
-        return int(self.covers.record.size)
+        return int(self.record.size)
 
-    def grow(self, groups: int = 0) -> None:
-        """Make room for twice the covers, or for partitions into that many groups."""
-        old = self.covers
-        room = old.room * (1 if groups > old.groups else GROWTH)
-        self.covers = Covers(self._choices, room, max(groups, old.groups))
-        self.covers.record.size = old.record.size
-        for new, was in zip(self.covers.arrays, old.arrays, strict=True):
+    def make_room(self, groups: int) -> None:
+        """Grow if there is no room for another cover, or for partitions into that many groups."""
+        size, room, widest = len(self), int(self.record.room), int(self.record.groups)
+        if size < room and groups <= widest:
+            return
+        old = self._arrays
+        self._hold(room if size < room else GROWTH * room, max(groups, widest))
+        self.record.size = size
+        for new, was in zip(self._arrays, old, strict=True):
             new[tuple(map(slice, was.shape))] = was
 
     def add(self, partition: int, left_out: BoolArray, sums: list[FloatArray], level: float) -> int:
         """Add a cover unless it is known; its number. ``left_out`` : (E,)"""
-        masks = self._masks(left_out)
+        masks = self._choices.masks_of(left_out)
         self._count()
-        key = partition, masks.tobytes()
-        if (known := self._known.get(key)) is not None:
-            if level < self.covers.level[known]:
-                self.covers.level[known], self.covers.sums[known, : len(sums)] = level, sums
+        if (known := self._known.get((partition, masks.tobytes()))) is not None:
+            if level < self.level[known]:
+                self.level[known], self.sums[known, : len(sums)] = level, sums
             return known
-        if len(self) == self.covers.room or len(sums) > self.covers.groups:
-            self.grow(len(sums))
+        self.make_room(len(sums))
         k = len(self)
-        self.covers.left_out[k], self.covers.partition[k], self.covers.level[k] = masks, partition, level
-        self.covers.sums[k, : len(sums)] = sums
-        self.covers.record.size = k + 1
+        self.masks[k], self.partition[k], self.level[k] = masks, partition, level
+        self.sums[k, : len(sums)] = sums
+        self.record.size = k + 1
         self._count()
         return k
 
     def left_out(self, cover: int) -> BoolArray:
         """(E,) which elements a cover leaves out."""
-        masks = self.covers.left_out[cover][self._choices.owner]
-        return np.asarray(masks >> self._choices.bit.astype(np.uint64) & np.uint64(1), dtype=np.bool_)
+        return self._choices.in_masks(self.masks[cover])
 
     def violated(self, price: FloatArray, enough: float, level: float) -> list[int]:
         """Covers, true for a level, of which less than ``enough`` is paid, the worst first; ``price`` : (E,) paid."""
         self._count()
         counted = self._dense[: len(self)] @ price
-        found = np.flatnonzero((counted < enough - NEGLIGIBLE) & (self.covers.level[: len(self)] <= level))
+        found = np.flatnonzero((counted < enough - NEGLIGIBLE) & (self.level[: len(self)] <= level))
         return [int(k) for k in found[np.argsort(counted[found], kind="stable")][:MOST_VIOLATED]]
 
     def keep_latest(self, count: int) -> None:
         """Forget all but the covers that were found last; they are numbered anew."""
         first = max(len(self) - count, 0)
-        for array in self.covers.arrays:
+        for array in self._arrays:
             array[: len(self) - first] = array[first : len(self)].copy()
-        self.covers.record.size = len(self) - first
+        self.record.size = len(self) - first
         self._known.clear()
         self._counted = 0
         self._count()
@@ -84,16 +139,8 @@ class CoverPool:
     def _count(self) -> None:
         """Number the covers that compiled loops added."""
         for k in range(self._counted, len(self)):
-            key = int(self.covers.partition[k]), self.covers.left_out[k].tobytes()
-            self._known.setdefault(key, k)
+            self._known.setdefault((int(self.partition[k]), self.masks[k].tobytes()), k)
         if self._counted < len(self):
             fresh = np.array([self.left_out(k) for k in range(self._counted, len(self))], dtype=np.float64)
             self._dense = np.concatenate([self._dense[: self._counted], fresh])
         self._counted = len(self)
-
-    def _masks(self, left_out: BoolArray) -> Any:
-        out = np.zeros(self.covers.left_out.shape[1], dtype=np.uint64)
-        chosen = np.flatnonzero(left_out)
-        bits = np.uint64(1) << self._choices.bit[chosen].astype(np.uint64)
-        np.bitwise_or.at(out, self._choices.owner[chosen], bits)
-        return out

@@ -1,32 +1,133 @@
-"""Covers that a relaxed plan violates, or that an attack on a plan shows."""
+"""Ways to cut links, and covers: those that a relaxed plan violates, or that an attack on a plan shows."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from ctypes import Structure, c_int64, c_void_p
+from itertools import islice
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from ratt_opt.graph.communication import robots_of
+from ratt_opt.graph.connected_partitions import finest_partitions
+from ratt_opt.graph.outcomes import LARGEST_ENUMERATION
+from ratt_opt.native.library import address, check_numbers, checked
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import from_triangles
 from ratt_opt.solvers.maxmin.covers.choices import Choices
-from ratt_opt.solvers.maxmin.covers.cover import Cover
-from ratt_opt.solvers.maxmin.covers.partitions import Partitions
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
-from ratt_opt.solvers.maxmin.covers.tables import Ways
+from ratt_opt.solvers.maxmin.proof import Cover
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.graph.communication import Link
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.levels.elements import Elements
+    from ratt_opt.solvers.maxmin.elements import Elements
+    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 
-__all__ = ["Separation"]
+__all__ = ["Partitions", "Separation", "Ways"]
 
+MOST_LISTED = 500
+"""Partitions that are listed: each is priced in every round."""
 GROWN, ADDED = 16, 8
 """Partitions of lowest price whose kept elements are completed in a round, and covers that a round adds at most."""
 NOISE = 0.2
 """Relative noise on the order in which targets are lost, so that rounds on the same relaxed plan differ."""
 NEGLIGIBLE = 1e-6
 """Violations that count as none."""
+
+
+class WaysRecord(Structure):
+    """``Ways`` of ``native/src/covers.h``."""
+
+    _fields_: ClassVar = [
+        *((name, c_int64) for name in ("groups", "partitions", "widest")),
+        *((name, c_void_p) for name in ("members", "inside", "of", "order")),
+    ]
+
+
+class Ways:
+    """Partitions ``of`` (P, S) of groups, padded by -1, in the ``order`` (P,) in which they are tried; it changes.
+
+    ``members`` : (G, N), ``inside`` : (G, E) which robots and elements are in each group
+
+    Raises
+    ------
+    InputError : a shape or a type is another, or a number is not that of a group, or of a partition.
+    """
+
+    def __init__(self, choices: Choices, members: BoolArray, inside: BoolArray, of: IntArray, order: IntArray) -> None:
+        groups, partitions = len(members), len(order)
+        widest = np.shape(of)[-1] if np.ndim(of) == 2 else 0
+        self._arrays = (
+            checked("members", members, np.bool_, (groups, len(choices.safe))),
+            checked("inside", inside, np.bool_, (groups, choices.elements.count)),
+            checked("of", of, np.int64, (partitions, widest)),
+            checked("order", order, np.int64, (partitions,), written=True),
+        )
+        check_numbers("of", of, -1, groups)
+        check_numbers("order", order, 0, partitions)
+        self.widest = widest
+        self.record = WaysRecord(groups, partitions, widest, *map(address, self._arrays))
+
+
+class Partitions:
+    """Partitions of all robots, blinded or not, that cutting at most ``alpha_c`` links leaves.
+
+    ``groups`` : all different groups; ``of`` : the groups of each partition, by their numbers
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        self.groups: list[tuple[int, ...]] = []
+        self.of: list[IntArray] = []
+        self._looked = 0
+        self._group: dict[tuple[int, ...], int] = {}
+        self._partition: dict[tuple[tuple[int, ...], ...], int] = {}
+        self.add(problem.communication.groups())
+        threat = problem.threat
+        if threat.alpha_c == 0 or threat.links_alike:
+            return
+        if problem.n_robots <= LARGEST_ENUMERATION:
+            for partition in islice(finest_partitions(threat), MOST_LISTED):
+                self.add(robots_of(mask) for mask in partition)
+
+    def add_cut(self, links: Iterable[Link]) -> int:
+        """Add what is left when links are cut; the partition's number, new or old."""
+        return self.add(self.problem.communication.groups(links))
+
+    def add_cuts_of(self, pool: OutcomePool) -> bool:
+        """Add what the attacks of a pool leave that were not looked at yet; whether that is new."""
+        before = len(self.of)
+        while self._looked < len(pool) and len(self.of) < MOST_LISTED:
+            self.add_cut(pool.attack(self._looked).links)
+            self._looked += 1
+        return len(self.of) > before
+
+    def add(self, partition: Iterable[Iterable[int]]) -> int:
+        """Add a partition; its number, new or old."""
+        groups = tuple(sorted(tuple(sorted(group)) for group in partition))
+        if groups not in self._partition:
+            for group in groups:
+                if group not in self._group:
+                    self._group[group] = len(self.groups)
+                    self.groups.append(group)
+            self._partition[groups] = len(self.of)
+            self.of.append(np.array([self._group[group] for group in groups]))
+        return self._partition[groups]
+
+    def cut(self, partition: int) -> frozenset[Link]:
+        """The links that are cut."""
+        return self.problem.communication.links_between([self.groups[g] for g in self.of[partition].tolist()])
+
+    def members(self) -> BoolArray:
+        """(G, N) which robots are in each group."""
+        members = np.zeros((len(self.groups), self.problem.n_robots), dtype=np.bool_)
+        for row, group in zip(members, self.groups, strict=True):
+            row[list(group)] = True
+        return members
 
 
 class Separation:
@@ -109,11 +210,11 @@ class Separation:
 
     def stated(self, cover: int, elements: Elements) -> Cover:
         """The cover over the elements of the whole problem; ``elements`` : what each element here stands for."""
-        partition = int(self.pool.covers.partition[cover])
+        partition = int(self.pool.partition[cover])
         own = self.partitions.of[partition].tolist()
         places = sorted(range(len(own)), key=lambda place: self.partitions.groups[own[place]])
         return Cover(
             attack=Attack(frozenset(), self.partitions.cut(partition)),
             left_out=elements.members(np.flatnonzero(self.pool.left_out(cover))),
-            points=tuple(from_triangles(self.pool.covers.sums[cover, place]) for place in places),
+            points=tuple(from_triangles(self.pool.sums[cover, place]) for place in places),
         )

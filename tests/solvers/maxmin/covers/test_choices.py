@@ -13,15 +13,15 @@ import pytest
 from ratt_opt import InputError
 from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
-from ratt_opt.solvers.maxmin.covers import tables
+from ratt_opt.solvers.maxmin import marginal_tables
 from ratt_opt.solvers.maxmin.covers.choices import Choices, ChoicesRecord
-from ratt_opt.solvers.maxmin.covers.dive import Dive
-from ratt_opt.solvers.maxmin.covers.pool import CoverPool
-from ratt_opt.solvers.maxmin.covers.sums import CoverSums
-from ratt_opt.solvers.maxmin.levels.level_search import Outcome
-from ratt_opt.solvers.maxmin.levels.packed import PackedElements
-from ratt_opt.solvers.maxmin.marginals import tables as marginal_tables
-from ratt_opt.solvers.maxmin.marginals.diving import dive
+from ratt_opt.solvers.maxmin.covers.dive import NODE, STEP, Dive, NodesRecord, StackRecord
+from ratt_opt.solvers.maxmin.covers.pool import CoverPool, CoversRecord
+from ratt_opt.solvers.maxmin.covers.program import CoverSums, Sums, SumsRecord
+from ratt_opt.solvers.maxmin.covers.separation import Ways, WaysRecord
+from ratt_opt.solvers.maxmin.elements import PackedElements
+from ratt_opt.solvers.maxmin.levels import Outcome
+from ratt_opt.solvers.maxmin.marginal_search import dive
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -133,7 +133,7 @@ def test_the_smallest_tables(robots: int, elements: int, targets: int, groups: i
     of = np.zeros((groups, groups), np.int64)
     for level in (-1.0, 0.5, 10.0):
         ways, pool, sums = (
-            tables.Ways(choices, members, inside, of, np.arange(groups)),
+            Ways(choices, members, inside, of, np.arange(groups)),
             CoverPool(choices),
             CoverSums(elements),
         )
@@ -202,12 +202,12 @@ def good_calls() -> list[tuple[Callable[..., object], dict[str, Any], set[str]]]
             {"kept"},
         ),
         (
-            lambda **given: tables.Ways(choices, **given),
+            lambda **given: Ways(choices, **given),
             {"members": members, "inside": inside, "of": np.array([[0, 1], [1, -1]]), "order": np.array([1, 0])},
             {"order"},
         ),
         (
-            lambda **given: tables.Sums(3, **given),
+            lambda **given: Sums(3, **given),
             {"terms": np.ones((2, 3)), "tried": np.array([1, 0]), "used": np.ones(2)},
             {"used"},
         ),
@@ -237,7 +237,7 @@ def test_numbers_that_are_not_there_are_refused():
     members, inside = np.ones((2, 2), np.bool_), np.ones((2, 3), np.bool_)
     for of, order in (([[2, 1]], [0]), ([[-2, 1]], [0]), ([[0, 1]], [1]), ([[0, 1]], [-1])):
         with pytest.raises(InputError):
-            tables.Ways(choices, members, inside, np.array(of), np.array(order))
+            Ways(choices, members, inside, np.array(of), np.array(order))
         with pytest.raises(InputError):
             marginal_tables.Attacks(np.ones(2, np.uint64), np.array(of), np.array(order))
     for owner, enough in (([0, 0, 2], 2), ([0, 0, -1], 2), ([0, 0, 1], 0), ([0, 0, 1], 4)):
@@ -246,7 +246,7 @@ def test_numbers_that_are_not_there_are_refused():
     with pytest.raises(InputError):
         Choices(packed_elements(65), np.zeros(65, np.int64), np.zeros(1, np.bool_), 1)
     with pytest.raises(InputError):
-        tables.Sums(3, np.ones((2, 3)), np.array([2]), np.ones(2))
+        Sums(3, np.ones((2, 3)), np.array([2]), np.ones(2))
     for sizes in ([2, 2], [3, 0], [4, -1], [1] * 65):
         with pytest.raises(InputError):
             marginal_tables.Choosers(choices.elements, np.array(sizes))
@@ -258,14 +258,12 @@ def test_numbers_that_are_not_there_are_refused():
 def test_records_have_the_layout_that_c_expects():
     layout, sizes = function("layout_of_searches", None, ctypes.c_void_p), np.zeros(12, np.int64)
     layout(sizes.ctypes.data)
-    made: list[Any] = [
-        ctypes.sizeof(record) for record in (ChoicesRecord, tables.WaysRecord, tables.CoversRecord, tables.SumsRecord)
-    ]
+    made: list[Any] = [ctypes.sizeof(record) for record in (ChoicesRecord, WaysRecord, CoversRecord, SumsRecord)]
     made += [
-        tables.STEP.itemsize,
-        ctypes.sizeof(tables.StackRecord),
-        tables.NODE.itemsize,
-        ctypes.sizeof(tables.NodesRecord),
+        STEP.itemsize,
+        ctypes.sizeof(StackRecord),
+        NODE.itemsize,
+        ctypes.sizeof(NodesRecord),
     ]
     names = "Choosers", "Attacks", "Path", "Gains"
     made += [ctypes.sizeof(getattr(marginal_tables, f"{name}Record")) for name in names]

@@ -21,9 +21,9 @@ from ratt_opt import (
     verify_certificate,
     worst_case_attack,
 )
-from ratt_opt.solvers.maxmin.covers.cover import Cover, cover_bound
+from ratt_opt.solvers.maxmin.covers.pool import cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
-from ratt_opt.solvers.maxmin.levels.elements import Elements
+from ratt_opt.solvers.maxmin.elements import Elements
 from tests.oracles import brute_force_worst_case
 from tests.solvers.maxmin.engine import COVERS_ALONE, NO_PLANS_LISTED, covers
 from tests.strategies import sparse_problem
@@ -32,6 +32,7 @@ from tests.ways import go
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ratt_opt.solvers.maxmin.proof import Cover
     from tests.ways import Way
 
 CASES = 40
@@ -118,7 +119,7 @@ def test_a_plan_that_fails_a_cover_is_worth_no_more_than_its_bound(kind: str):
         for k in range(len(separation.pool)):
             cover = separation.stated(k, elements)
             bound = cover_bound(problem, cover)
-            assert bound <= separation.pool.covers.level[k] * (1 + 1e-9) + 1e-9
+            assert bound <= separation.pool.level[k] * (1 + 1e-9) + 1e-9
             own = [value for plan, value in values.items() if fails(problem, cover, plan)]
             failing += len(own)
             assert max(own, default=-np.inf) <= bound + 1e-12 * max(top, 1.0)

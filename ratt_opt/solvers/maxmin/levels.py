@@ -1,0 +1,209 @@
+"""Searches in depth that show that no plan is worth more than a level, or find one that is.
+
+Levels are tried by one search after the other, each lower than the bound, from the best plan known upwards. A search at
+the level of the best plan ends it all. If it takes too long, levels further up are tried, so that the bound falls step
+by step. What ends a search are covers (``covers/``) or marginal gains (``marginal_search.py``).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from enum import Enum, IntEnum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.budget import Stop
+from ratt_opt.solvers.maxmin.candidates import Walk
+from ratt_opt.solvers.maxmin.frontier import ClosingRule
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import IntArray
+    from ratt_opt.solvers.maxmin.elements import Elements
+    from ratt_opt.solvers.maxmin.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.proof import UpperProof
+    from ratt_opt.solvers.maxmin.search import Known, Progress
+    from ratt_opt.solvers.maxmin.turns import Turns
+
+__all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
+
+SHARES = (0.0, 0.25, 0.5, 0.75)
+"""Of what is open, how far above the best plan the levels are that are tried in turn."""
+WALK_KICKS, WALK_SHARE = 50, 0.05
+"""Kicks, and share of the time left, in which a better plan is looked for once the best plan's level took too long."""
+FIRST_RUNS, GROWTH = 20, 2
+"""Runs of the first search at each level, and how many times as many the next ones have."""
+
+
+class Outcome(IntEnum):
+    """How a run of the search in depth ends."""
+
+    PROVED = 0
+    """Nothing is left."""
+    SPENT = 1
+    """Its nodes are spent."""
+    PLAN = 2
+    """One plan is left."""
+    FULL = 3
+    """An array is full."""
+
+
+class Ending(Enum):
+    """Why a search ended."""
+
+    PROVED = "no plan is worth more than the level"
+    LIMIT = "its runs were spent, or its record is long"
+    STOPPED = "it was time to stop"
+
+
+class LevelSearch(ABC):
+    """The search at one level, which rises with the best plan; it may be run on and on."""
+
+    def __init__(self, elements: Elements, incumbent: Incumbent, level: Callable[[], float]) -> None:
+        self._elements, self._incumbent = elements, incumbent
+        self._level_now, self.level = level, level()
+        self.runs = 0
+
+    @property
+    @abstractmethod
+    def is_long(self) -> bool:
+        """Whether its record is as long as memory should hold."""
+
+    def run(self, turns: Turns, runs: int) -> Ending:
+        """Search until nothing is open, the runs are spent, or it is time to stop."""
+        until = self.runs + runs
+        while self.runs < until:
+            if turns.budget.stop() is not None or turns.stop() is not None:
+                return Ending.STOPPED
+            if self.is_long:
+                return Ending.LIMIT
+            if self.runs == 0:
+                self._begin(turns)
+            outcome = self._search_on()
+            if outcome is Outcome.PROVED:
+                return Ending.PROVED
+            if outcome is Outcome.PLAN and not self._meet(self._plan()):
+                return Ending.STOPPED
+            if outcome is Outcome.SPENT:
+                turns.budget.nodes += 1
+                self.runs += 1
+                self._learn(turns)
+        return Ending.LIMIT
+
+    @abstractmethod
+    def _search_on(self) -> Outcome:
+        """Search on for one run's nodes."""
+
+    @abstractmethod
+    def _plan(self) -> IntArray:
+        """(N,) the plan that is left, of the undominated elements."""
+
+    def _begin(self, turns: Turns) -> None:  # noqa: B027  (a search may have nothing to do then; so may those below)
+        """What is to be done before the first run."""
+
+    def _learn(self, turns: Turns) -> None:  # noqa: B027
+        """What is to be done after a run whose nodes were spent."""
+
+    def _heed(self, plan: IntArray, outcome: int) -> None:  # noqa: B027
+        """Take note that a known outcome leaves a plan no more than the level."""
+
+    def _meet(self, plan: IntArray) -> bool:
+        """Attack a plan: it raises the level, or an attack leaves it no more; whether one of both."""
+        whole, pool = self._elements.problem.kept[plan], self._incumbent.pool
+        if pool.plan_value(whole) > self.level:
+            self._incumbent.offer(whole)
+        values = pool.outcome_values(pool.group_values(pool.objective.information[whole]))
+        if len(values) and values.min() <= self.level:
+            self._heed(plan, int(values.argmin()))
+            return True
+        raised = self._level_now()
+        if raised <= self.level:
+            return False  # it was time to stop before the plan was attacked
+        self.level = raised  # what is a dead end stays one
+        return True
+
+
+class SearchByLevels(ABC):
+    """``upper`` : proved upper bound on the optimum, infinite before the first search is complete."""
+
+    def __init__(self, known: Known, elements: Elements) -> None:
+        self._known, self._elements, self.upper = known, elements, np.inf
+        self._rule = ClosingRule(known.incumbent.candidates, known.rule.gap)  # without the other search's floor
+        self._searches: dict[int, LevelSearch] = {}
+        self._runs, self._share, self._left = FIRST_RUNS, 0, FIRST_RUNS
+        self._in_vain = np.inf
+        self._walk = Walk(known.incumbent, np.random.default_rng(0))
+
+    @abstractmethod
+    def proof(self) -> UpperProof:
+        """The proof of ``upper``."""
+
+    @abstractmethod
+    def _begun(self) -> LevelSearch:
+        """A new search at the present level."""
+
+    @abstractmethod
+    def _keep(self, search: LevelSearch) -> None:
+        """Take what a search proved."""
+
+    def run(self, turns: Turns, progress: Progress, upper: float, most_nodes: int) -> Stop:
+        """Search on until nothing is left, these nodes are spent or it is time to stop.
+
+        ``upper`` : what is proved otherwise
+        """
+        budget = turns.budget
+        until = budget.nodes + most_nodes
+        self.upper, told = min(self.upper, upper), budget.nodes
+        while True:
+            if self.upper <= self._rule.better or self._rule.closes(self.upper):
+                return Stop.GAP
+            if (stop := budget.stop() or turns.stop()) is not None:
+                return stop
+            if budget.nodes >= until or self._level() >= self._in_vain:
+                return Stop.NODES
+            self._make_room()
+            search = self._search()
+            before = search.runs
+            ending = search.run(turns, self._left)
+            self._left -= search.runs - before
+            if ending is Ending.LIMIT and self._share == 0:
+                self._walk.run(budget.part(WALK_SHARE), WALK_KICKS)
+            if ending is Ending.PROVED:
+                self._keep(search)
+                del self._searches[self._share]
+                if self._share == 0:  # closed, or nothing is left but what its margins for rounding leave
+                    self._in_vain = search.level
+            self._next_share(ending)
+            if progress is not None and budget.nodes > told:
+                told = budget.nodes
+                progress(budget.nodes, self._known.incumbent.proved.lower, self.upper)
+
+    def _make_room(self) -> None:
+        """Give up searches of long records."""
+        self._searches = {share: search for share, search in self._searches.items() if not search.is_long}
+
+    def _next_share(self, ending: Ending) -> None:
+        """After the best plan's level come the higher ones, each lower than the last, as long as they are proved."""
+        if ending is Ending.STOPPED:  # it goes on with the runs that are left
+            return
+        if self._share == 0 or ending is Ending.PROVED:
+            self._share = (self._share - 1) % len(SHARES)
+        else:
+            self._share = 0
+        if self._share == 0:
+            self._runs *= GROWTH
+        self._left = self._runs
+
+    def _search(self) -> LevelSearch:
+        """The search of the present share, a new one if the level is lower than that of the last."""
+        search = self._searches.get(self._share)
+        if search is None or search.level > self._level():
+            search = self._searches[self._share] = self._begun()
+        search.level = self._level()
+        return search
+
+    def _level(self) -> float:
+        floor = self._known.incumbent.candidates.level
+        return max(floor + SHARES[self._share] * (self.upper - floor), self._rule.better)

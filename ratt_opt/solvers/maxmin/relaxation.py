@@ -1,0 +1,285 @@
+"""The relaxed plans of a node and the cuts that bound them: solve a program, cut its relaxed plan off, solve again.
+
+:class:`CutStore` keeps all cuts of a search as arrays and derives every bound from them. :class:`NodeProgram` is the
+linear program, of which only the multipliers are used; :class:`CutRounds` adds cuts that its relaxed plan violates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.bounds.cuts import combined_bound, tangent_cut
+from ratt_opt.highs import LinearProgram, Rows, rows_of
+from ratt_opt.solvers.maxmin.proof import TangentCut
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.bounds.cuts import GroupCut
+    from ratt_opt.solvers.maxmin.adversary import Adversary
+    from ratt_opt.solvers.maxmin.elements import Choices, Task
+    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode
+    from ratt_opt.solvers.maxmin.winners import Winners
+
+__all__ = ["CUTS_A_ROUND", "CutRounds", "CutStore", "RelaxedPlan"]
+
+# Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
+CUTS_A_ROUND = 8
+"""Groups cut in one round: fewer rounds against larger programs; 4 take 32 nodes, 16 take 30, in the same time."""
+TARGETS_A_CUT = 4
+"""Targets of one group that get a tangent each (max-eigenvalue); 1 and 8 take 32 nodes, in the same time."""
+PATIENCE = 8
+"""Solves without a multiplier after which a cut leaves the program; it stays stored. 2 take 34 nodes, 32 take 30."""
+VIOLATED = 1e-10
+"""Share of the relaxed level by which a cut has to be lower to count as violated."""
+DEEP = 0.5
+"""Share of the depth of the deepest known cut that a stored one needs to be brought back; 0 and 0.9 take 30 nodes."""
+ROUNDING = 1e-12
+"""Weights of elements up to this are the simplex method's rounding."""
+
+
+class CutStore:
+    """Cut ``k`` bounds the team value under outcome ``outcomes[k]`` if its group ``groups[k]`` wins.
+
+    Cuts are never removed: leaves refer to them. Scores are stored element by element, because a
+    relaxed plan has few elements.
+    """
+
+    def __init__(self, task: Task, pool: OutcomePool) -> None:
+        self.task, self.pool = task, pool
+        self._cuts: list[GroupCut] = []
+        self._origin = np.zeros((64, 2), dtype=np.int64)
+        self._constants = np.zeros(64)
+        self._scores = np.zeros((task.objective.n, 64))
+
+    def __len__(self) -> int:
+        return len(self._cuts)
+
+    @property
+    def outcomes(self) -> IntArray:
+        """(K,) outcome of each cut."""
+        return self._origin[: len(self._cuts), 0]
+
+    @property
+    def groups(self) -> IntArray:
+        """(K,) group of each cut, by its number in the pool."""
+        return self._origin[: len(self._cuts), 1]
+
+    @property
+    def constants(self) -> FloatArray:
+        """(K,) constants."""
+        return self._constants[: len(self._cuts)]
+
+    def scores(self, cut: int | IntArray) -> FloatArray:
+        """(E,) scores of one cut, or (E, K) of some."""
+        return self._scores[:, cut]
+
+    def bounds(self, selection: FloatArray) -> FloatArray:
+        """(K,) what each cut bounds its group's value by under a relaxed selection (E,)."""
+        chosen = np.flatnonzero(selection)
+        return np.asarray(self.constants + selection[chosen] @ self._scores[chosen, : len(self._cuts)])
+
+    def tangent(self, outcome: int, group: int, point: FloatArray, target: int | None = None) -> int:
+        """Add the tangent of a group's value at the posterior information ``point``; return its index."""
+        return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
+
+    def add(self, outcome: int, group: int, cut: GroupCut) -> int:
+        """Add a cut; return its index."""
+        k = len(self._cuts)
+        if k == len(self._constants):
+            self._origin = np.concatenate([self._origin, np.zeros_like(self._origin)])
+            self._constants = np.concatenate([self._constants, np.zeros_like(self._constants)])
+            self._scores = np.concatenate([self._scores, np.zeros_like(self._scores)], axis=1)
+        self._origin[k] = outcome, group
+        self._constants[k] = cut.constant
+        self._scores[:, k] = cut.scores
+        self._cuts.append(cut)
+        return k
+
+    def usable(self, winners: IntArray) -> BoolArray:
+        """(K,) whether each cut's group is the one that wins its outcome, by ``winners`` (O,)."""
+        return np.asarray(winners[self.outcomes] == self.groups)
+
+    def leaf_bound(self, leaf: Leaf, choices: Sequence[IntArray]) -> tuple[float, FloatArray]:
+        """The bound of a leaf's convex combination over plans within ``choices``, and its combined scores."""
+        cuts = list(leaf.cuts)
+        return combined_bound(self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices)
+
+    def record(self, k: int) -> TangentCut:
+        """One cut as part of a proof."""
+        cut = self._cuts[k]
+        return TangentCut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RelaxedPlan:
+    """What the solver claims: ``selection`` (E,) weights of elements, ``duals`` >= 0 weights of ``cuts``."""
+
+    selection: FloatArray
+    cuts: IntArray
+    duals: FloatArray
+    level: float
+
+    def rounded(self, choices: Choices) -> IntArray:
+        """(N,) the element of largest weight of each robot."""
+        return np.array([choice[self.selection[choice].argmax()] for choice in choices])
+
+
+class NodeProgram:
+    """``max t`` with ``t <= constant_k + scores_k . z`` for the cuts in use, ``sum_e z_e = 1`` for each robot.
+
+    One program for the whole search: nodes differ in column bounds and in the cuts they use, so each
+    solve starts from the last basis. Only the multipliers are used; every bound is derived from them anew.
+    """
+
+    def __init__(self, n_elements: int, choices: Choices) -> None:
+        self._n, self._robots = n_elements, len(choices)
+        zeros, ones = np.zeros(n_elements), np.ones(n_elements)
+        owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], 1.0, 1.0)
+        cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(ones, np.inf)
+        self._program = LinearProgram(cost, lower, upper, rows=owners, maximise=True, solver="simplex")
+        self._allowed = np.ones(n_elements, dtype=np.bool_)
+        self.in_use: list[int] = []
+        """Cuts that are rows now, in row order."""
+        self._idle: dict[int, int] = {}
+        self._fresh: list[tuple[float, FloatArray]] = []
+        """Constants and scores of the last cuts in use, whose rows are added together before the next solve."""
+
+    def use(self, cut: int, constant: float, scores: FloatArray) -> None:
+        """Add one cut as a row."""
+        self._fresh.append((constant, scores))
+        self.in_use.append(cut)
+        self._idle[cut] = 0
+
+    def _add_fresh(self) -> None:
+        if not self._fresh:
+            return
+        columns = [np.append(np.flatnonzero(scores), self._n) for _, scores in self._fresh]
+        values = [np.append(-scores[own[:-1]], 1.0) for own, (_, scores) in zip(columns, self._fresh, strict=True)]
+        rows = Rows(
+            lower=np.full(len(columns), -np.inf),
+            upper=np.array([constant for constant, _ in self._fresh]),
+            starts=np.cumsum([0, *map(len, columns)]),
+            columns=np.concatenate(columns),
+            values=np.concatenate(values),
+        )
+        self._program.add_rows(rows)
+        self._fresh.clear()
+
+    def drop(self, gone: Callable[[int], bool]) -> None:
+        """Remove the rows of cuts for which ``gone`` is true."""
+        self._add_fresh()
+        positions = [position for position, cut in enumerate(self.in_use) if gone(cut)]
+        if positions:
+            self._program.delete_rows(np.array(positions) + self._robots)
+            for position in positions:
+                del self._idle[self.in_use[position]]
+            kept = set(positions)
+            self.in_use = [cut for position, cut in enumerate(self.in_use) if position not in kept]
+
+    def drop_idle(self, patience: int) -> None:
+        """Remove cuts whose multiplier was zero in the last ``patience`` solves."""
+        self.drop(lambda cut: self._idle[cut] > patience)
+
+    def allow(self, choices: Choices) -> None:
+        """Set which elements may be chosen."""
+        allowed: BoolArray = np.zeros(self._n, dtype=np.bool_)
+        allowed[np.concatenate(choices)] = True
+        for e in np.flatnonzero(allowed != self._allowed).tolist():
+            self._program.bound_column(e, 0.0, 1.0 if allowed[e] else 0.0)
+        self._allowed = allowed
+
+    def solve(self, seconds: float = np.inf) -> RelaxedPlan | None:
+        """Solve within that many seconds and return what HiGHS claims, or ``None`` when it claims no optimum."""
+        self._add_fresh()
+        claim = self._program.solve(seconds)
+        if not claim.is_optimal:
+            return None
+        duals = np.abs(claim.duals[self._robots :])
+        for cut, dual in zip(self.in_use, duals, strict=True):
+            self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
+        columns = claim.x[: self._n]
+        selection = np.where(columns > ROUNDING, np.minimum(columns, 1.0), 0.0)
+        cuts, level = np.array(self.in_use, dtype=np.int64), float(claim.x[self._n])
+        return RelaxedPlan(selection=selection, cuts=cuts, duals=duals, level=level)
+
+
+class CutRounds:
+    """The cuts in use at a node: usable ones that were stored, and tangents if its relaxed plan violates none."""
+
+    def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary) -> None:
+        self.task, self.pool = cuts.task, cuts.pool
+        self.cuts, self.winners, self.adversary = cuts, winners, adversary
+        self._program = NodeProgram(self.task.objective.n, self.task.choices)
+
+    def use(self, k: int) -> None:
+        """Bring cut ``k`` into the program."""
+        self._program.use(k, float(self.cuts.constants[k]), self.cuts.scores(k))
+
+    def begin(self, node: TreeNode) -> None:
+        """Leave out what is not usable at a node; give it a cut on every decided outcome if it has none."""
+        winners = self.winners.at(node)
+        usable = self.cuts.usable(winners)
+        self._program.drop(lambda k: not usable[k])
+        self._program.drop_idle(PATIENCE)
+        if self._program.in_use:
+            return
+        best = np.array([choice[self.task.singles[choice].argmax()] for choice in node.choices])
+        points = self.pool.group_points(self.task.objective.information[best])
+        for outcome, winner in enumerate(winners.tolist()):
+            if winner >= 0 and len(self._program.in_use) < CUTS_A_ROUND:
+                self.use(self.cuts.tangent(outcome, winner, points[winner]))
+
+    def solve(self, node: TreeNode) -> RelaxedPlan | None:
+        """The relaxed plan of a node under the cuts in use, or ``None`` if HiGHS claims none."""
+        self._program.allow(node.choices)
+        return self._program.solve(self.adversary.budget.seconds_left)
+
+    def separate(self, node: TreeNode, relaxed: RelaxedPlan) -> bool:
+        """Use cuts that the relaxed plan violates; False when no stored, known or new outcome has one."""
+        level = relaxed.level - VIOLATED * abs(relaxed.level)
+        of_robot = self.task.mixed(relaxed.selection)
+        values = self.pool.group_values(of_robot)
+        if self._use_stored(node, relaxed.selection, values, level):
+            return True
+        if self._cut_known(node, of_robot, values, level):
+            return True
+        return self.adversary.learn_relaxed(of_robot) and self._cut_known(
+            node, of_robot, self.pool.group_values(of_robot), level
+        )
+
+    def _use_stored(self, node: TreeNode, selection: FloatArray, values: FloatArray, level: float) -> bool:
+        """Bring back stored cuts that the relaxed plan violates by much of what a new cut could."""
+        winners = self.winners.at(node)
+        lowest = float(values[winners[winners >= 0]].min(initial=np.inf))
+        deepest = level - DEEP * max(level - lowest, 0.0)
+        bounds = self.cuts.bounds(selection)
+        usable = self.cuts.usable(winners) & (bounds < deepest)
+        usable[self._program.in_use] = False
+        candidates = np.flatnonzero(usable)
+        for k in candidates[np.argsort(bounds[candidates], kind="stable")][:CUTS_A_ROUND].tolist():
+            self.use(k)
+        return len(candidates) > 0
+
+    def _cut_known(self, node: TreeNode, of_robot: FloatArray, values: FloatArray, level: float) -> bool:
+        """Add tangents at the relaxed plan for the known outcomes of smallest value below ``level``."""
+        objective = self.task.objective
+        teams = self.pool.outcome_values(values)
+        cut_groups: set[int] = set()
+        for outcome in np.argsort(teams, kind="stable").tolist():
+            if teams[outcome] >= level or len(cut_groups) >= CUTS_A_ROUND:
+                break
+            winner = self.winners.of(node, outcome)
+            if winner is None or winner in cut_groups or values[winner] >= level:
+                continue
+            members = list(self.pool.groups[winner])
+            point = np.asarray(objective.prior_information + of_robot[members].sum(axis=0))
+            for target in objective.tangent_targets(point, level, TARGETS_A_CUT):
+                self.use(self.cuts.tangent(outcome, winner, point, target))
+            cut_groups.add(winner)
+        return bool(cut_groups)

@@ -1,0 +1,233 @@
+"""Best plans by marginal gains: against every plan and attack, where robots see few targets."""
+
+from __future__ import annotations
+
+import copy
+import json
+from typing import TYPE_CHECKING, Any
+
+import networkx as nx
+import numpy as np
+import pytest
+from flint import fmpq, fmpq_mat
+
+from ratt_opt import (
+    FileFormatError,
+    LogDetObjective,
+    MaxMinResult,
+    Problem,
+    ProofError,
+    certify,
+    limited_view_scenario,
+    solve_maxmin,
+    verify_certificate,
+)
+from ratt_opt.solvers.maxmin.elements import Elements
+from ratt_opt.solvers.maxmin.marginal_search import raised_information
+from tests.oracles import brute_force_optimum
+from tests.solvers.maxmin.engine import MARGINALS_ALONE, by_marginals, marginals
+from tests.solvers.maxmin.proofs import proved_upper
+from tests.strategies import sparse_problem
+from tests.ways import go
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+CASES = 60
+
+
+@pytest.fixture(autouse=True)
+def by_marginals_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No other search runs, and this one however much robots see."""
+    go(monkeypatch, MARGINALS_ALONE)
+
+
+def rounding(problem: Problem) -> float:
+    """How wide a bracket may be where nothing is open."""
+    return 20 * problem.evaluation_error + 64 * problem.objective.rounding
+
+
+def check_bracket(problem: Problem, found: MaxMinResult, optimum: float) -> None:
+    scale = max(1e-3, problem.objective(range(problem.objective.n)))
+    slack = 1e-12 * scale + 2 * problem.evaluation_error
+    assert found.lower <= optimum + slack
+    assert found.upper >= optimum - slack
+    if by_marginals(found):
+        assert optimum - slack <= proved_upper(problem, found.proof) <= found.upper + slack
+
+
+@pytest.mark.parametrize("dimension", [1, 2, 3])
+def test_marginal_gains_alone_find_and_prove_the_best_plan(dimension: int, tmp_path: Path):
+    proved = 0
+    for seed in range(CASES):
+        problem = sparse_problem(np.random.default_rng([seed, dimension, 8]), "logdet", dimension)
+        optimum = brute_force_optimum(problem)
+        found = solve_maxmin(problem)
+        check_bracket(problem, found, optimum)
+        scale = max(1e-3, problem.objective(range(problem.objective.n)))
+        assert found.upper - found.lower <= 2e-9 * scale + rounding(problem)
+        if by_marginals(found):
+            proved += 1
+            certificate = certify(problem, found, tmp_path / "c.json")
+            assert certificate.verified.upper <= optimum + 1e-6 * scale
+            assert verify_certificate(tmp_path / "c.json").upper >= optimum - 1e-12 * scale
+    assert proved > CASES // 5
+
+
+@pytest.mark.parametrize("most", [1, 2, 5, 20])
+def test_a_limit_of_nodes_leaves_a_true_bracket(most: int, monkeypatch: pytest.MonkeyPatch):
+    go(monkeypatch, marginals(run=3))
+    for seed in range(CASES // 3):
+        problem = sparse_problem(np.random.default_rng([seed, 2, 9]), "logdet")
+        check_bracket(problem, solve_maxmin(problem, max_nodes=most), brute_force_optimum(problem))
+
+
+def test_searches_whose_record_is_long_are_given_up(monkeypatch: pytest.MonkeyPatch):
+    go(monkeypatch, marginals(run=3, most_recorded=8))
+    for seed in range(CASES // 3):
+        problem = sparse_problem(np.random.default_rng([seed, 2, 10]), "logdet")
+        check_bracket(problem, solve_maxmin(problem, max_nodes=100), brute_force_optimum(problem))
+
+
+def test_a_record_that_grows_is_complete(monkeypatch: pytest.MonkeyPatch):
+    go(monkeypatch, marginals(run=3, first_record=4))
+    for seed in range(CASES // 3):
+        problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
+        check_bracket(problem, solve_maxmin(problem), brute_force_optimum(problem))
+
+
+@pytest.mark.parametrize("tried", [0, 1])
+def test_few_attacks_at_a_node_cost_time_only(tried: int, monkeypatch: pytest.MonkeyPatch):
+    go(monkeypatch, marginals(most_tried=tried))
+    for seed in range(CASES // 3):
+        problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
+        optimum, found = brute_force_optimum(problem), solve_maxmin(problem)
+        check_bracket(problem, found, optimum)
+        assert found.upper - found.lower <= 2e-9 * max(optimum, 1e-3) + rounding(problem)
+
+
+def test_few_sets_of_seers_that_are_kept_cost_time_only(monkeypatch: pytest.MonkeyPatch):
+    go(monkeypatch, marginals(sets=1))
+    for seed in range(CASES // 3):
+        problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
+        check_bracket(problem, solve_maxmin(problem), brute_force_optimum(problem))
+
+
+@pytest.mark.parametrize("diffuse", [1e6, 1e9])
+def test_brackets_are_true_where_the_prior_says_nothing(diffuse: float):
+    """Values are off by more than a bracket that counts as closed is wide: what is left open then is true."""
+    for seed in range(10):
+        rng = np.random.default_rng([seed, 11])
+        factor = rng.normal(size=(9, 4, 2, 1)) * (rng.random((9, 4)) < 0.5)[..., None, None]
+        objective = LogDetObjective(diffuse * np.eye(2)[None].repeat(4, axis=0), factor @ factor.swapaxes(-1, -2))
+        problem = Problem(objective, np.repeat([0, 1, 2], 3), nx.path_graph(3), 1, 0)
+        check_bracket(problem, solve_maxmin(problem, max_nodes=50), brute_force_optimum(problem))
+
+
+def test_raised_information_is_no_less_than_what_it_stands_for_exactly():
+    for seed in range(CASES):
+        rng = np.random.default_rng([seed, 12])
+        axes = rng.normal(size=(3, 2, 3, 1))
+        parts = axes @ axes.swapaxes(-1, -2)
+        information = np.concatenate([parts, parts * rng.choice([1.0, 1 - 1e-15, 0.5, 0.0]), parts + parts[:1]])
+        problem = Problem(LogDetObjective(np.eye(3)[None].repeat(2, axis=0), information), np.zeros(9, int), None, 0, 0)
+        elements = Elements(problem)
+        for raised, members in zip(raised_information(elements), elements.stands_for, strict=True):
+            for target in range(2):
+                own = exact(raised[target])
+                assert is_positive(own)
+                assert all(is_positive(own - exact(information[e, target])) for e in members)
+            assert (
+                np.allclose(raised, elements.whole.information_objective.information[members[0]], atol=1e-12)
+                or len(members) > 1
+            )
+
+
+def is_positive(matrix: fmpq_mat) -> bool:
+    """Whether no eigenvalue is negative: the signs of the characteristic polynomial alternate."""
+    n = matrix.nrows()
+    return all((-1) ** (n - k) * c >= 0 for k, c in enumerate(matrix.charpoly().coeffs()))
+
+
+def exact(matrix: np.ndarray) -> fmpq_mat:
+    return fmpq_mat([[fmpq(*float(x).as_integer_ratio()) for x in row] for row in matrix])
+
+
+@pytest.fixture(scope="module")
+def documents(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[float, dict[str, Any]]]:
+    """Certificates by marginal gains alone, and what the best plan is worth."""
+    path, made = tmp_path_factory.mktemp("marginals") / "c.json", []
+    with pytest.MonkeyPatch.context() as patch:
+        go(patch, MARGINALS_ALONE)
+        for seed in range(8):
+            links = 1 if seed % 2 else 3
+            drawn = limited_view_scenario(4, 5, alpha_s=1 + seed % 2, alpha_c=links, seed=seed, view=57.0)
+            problem = drawn.problem("logdet")
+            found = solve_maxmin(problem)
+            if by_marginals(found) and len(found.proof.tree) > 3:
+                certify(problem, found, path)
+                made.append((found.lower, json.loads(path.read_text(encoding="utf-8"))))
+    assert len(made) >= 5
+    return made
+
+
+def rejected(document: dict[str, Any], path: Path) -> str:
+    path.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises((ProofError, FileFormatError)) as caught:
+        verify_certificate(path)
+    return str(caught.value)
+
+
+def test_a_false_claim_is_refused_whatever_leaves_say(documents: list[tuple[float, dict[str, Any]]], tmp_path: Path):
+    """Attacks of leaves are exchanged, nodes dropped and repeated, elements moved: no tree proves what is false."""
+    rng, tried = np.random.default_rng(0), 0
+    for optimum, given in documents:
+        document = copy.deepcopy(given)
+        document["claim"].update(upper=optimum * (1 - 1e-6), lower=0.0)
+        rejected(document, tmp_path / "forged.json")
+        for _ in range(15):
+            mutant = copy.deepcopy(document)
+            tree = mutant["upper"]["tree"]
+            for _ in range(int(rng.integers(1, 4))):
+                k = int(rng.integers(len(tree)))
+                kind = rng.integers(4)
+                if kind == 0 and len(tree) > 1:
+                    del tree[k]
+                elif kind == 1:
+                    tree.insert(k, copy.deepcopy(tree[int(rng.integers(len(tree)))]))
+                elif kind == 2:
+                    tree[k] = {"marginals": int(rng.integers(len(mutant["upper"]["attacks"])))}
+                elif "parts" in tree[k]:
+                    parts = tree[k]["parts"]
+                    parts[0] = sorted({*parts[0], *parts[-1]})
+            rejected(mutant, tmp_path / "forged.json")
+            tried += 1
+    assert tried > 50
+
+
+def test_forged_leaves_are_refused(documents: list[tuple[float, dict[str, Any]]], tmp_path: Path):
+    path, (_, document) = tmp_path / "forged.json", documents[0]
+    tree = document["upper"]["tree"]
+    leaf = next(k for k, node in enumerate(tree) if "marginals" in node)
+
+    def forged(change: Any) -> str:
+        mutant = copy.deepcopy(document)
+        change(mutant)
+        return rejected(mutant, path)
+
+    for value in (10**6, -1, 0.5, "0", None, [0]):
+        forged(lambda mutant, value=value: mutant["upper"]["tree"][leaf].update(marginals=value))
+    assert "more than the claim" in forged(lambda mutant: mutant["upper"].update(tree=[{"marginals": 0}]))
+    forged(lambda mutant: mutant["upper"]["tree"][leaf].update(weights=[1.0]))
+    everyone = list(range(len(document["plan"])))
+    assert "budget" in forged(lambda mutant: mutant["upper"]["attacks"][0].update(robots=everyone))
+    assert "log-det alone" in forged(lambda mutant: mutant["problem"].update(objective="trace"))
+
+
+def test_ten_robots_with_log_det_close(tmp_path: Path):
+    """Concave relaxations and covers leave 5 % of it after thirty seconds."""
+    problem = limited_view_scenario(10, 10, alpha_s=3, alpha_c=8, seed=2, view=57.0).problem("logdet")
+    found = solve_maxmin(problem, gap=1e-4)
+    assert by_marginals(found)
+    assert found.upper - found.lower <= 1e-4 * found.upper
+    assert certify(problem, found, tmp_path / "c.json").upper_raised <= 1e-6 * found.upper
