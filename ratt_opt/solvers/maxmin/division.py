@@ -24,7 +24,7 @@ from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.proof import Leaf, Split
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
@@ -248,12 +248,7 @@ def divide_by_scores(
 
     ``scores`` : (E, K) of cuts; weights : (K,) of their squared differences
     """
-    order = np.argsort(-selection[choice], kind="stable")
-    own = scores[choice]
-    distances = [((own - own[seed]) ** 2) @ weights for seed in order[:2]]
-    near = distances[0] <= distances[1]
-    near[order[1]] = False
-    return choice[near], choice[~near]
+    return _divided(choice, selection, lambda seed: ((scores[choice] - scores[seed]) ** 2) @ weights)
 
 
 def mixing_gains(
@@ -298,13 +293,20 @@ def divide_elements(
 
     Distances are measured in the curvature of the criterion at the posterior information ``point`` (M, d, d).
     """
-    order = np.argsort(-selection[choice], kind="stable")
-    first, second = choice[order[0]], choice[order[1]]
     covariance = np.linalg.inv(point)
-    distances = []
-    for seed in (first, second):
+
+    def distances(seed: int) -> FloatArray:
         scaled = covariance @ (objective.information[choice] - objective.information[seed])
-        distances.append(np.einsum("ejkl,ejlm,jmk,j->e", scaled, scaled, covariance, objective.weights))
-    near = distances[0] <= distances[1]
+        return np.asarray(np.einsum("ejkl,ejlm,jmk,j->e", scaled, scaled, covariance, objective.weights))
+
+    return _divided(choice, selection, distances)
+
+
+def _divided(
+    choice: IntArray, selection: FloatArray, distances: Callable[[int], FloatArray]
+) -> tuple[IntArray, IntArray]:
+    """Elements between the two of largest weight; ``distances`` : of all of them from one."""
+    order = np.argsort(-selection[choice], kind="stable")
+    near = distances(choice[order[0]]) <= distances(choice[order[1]])
     near[order[1]] = False
     return choice[near], choice[~near]

@@ -16,12 +16,14 @@ from ratt_opt.setfunctions.information import triangles
 from ratt_opt.solvers.undominated import dominators, undominated
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.undominated import UndominatedProblem
 
-__all__ = ["Choices", "Elements", "ElementsRecord", "PackedElements", "Task", "with_choice"]
+__all__ = ["Choices", "Elements", "ElementsRecord", "PackedElements", "Task", "padded", "with_choice"]
 
 Choices = tuple["IntArray", ...]
 """Per robot, the elements that remain; one of each class of equal ones."""
@@ -146,3 +148,11 @@ class PackedElements:
             information=triangles(information),
             sees=np.ascontiguousarray(sees),
         )
+
+
+def padded(rows: Sequence[Sequence[int] | IntArray]) -> IntArray:
+    """(K, S) numbers, filled up by -1, as C reads rows of different lengths."""
+    full = np.full((len(rows), max(map(len, rows), default=0)), -1, dtype=np.int64)
+    for row, own in zip(full, rows, strict=True):
+        row[: len(own)] = own
+    return full

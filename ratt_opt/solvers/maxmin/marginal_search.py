@@ -14,7 +14,7 @@ import numpy as np
 from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.rounding_errors import UNIT
-from ratt_opt.solvers.maxmin.elements import PackedElements
+from ratt_opt.solvers.maxmin.elements import PackedElements, padded
 from ratt_opt.solvers.maxmin.levels import LevelSearch, Outcome, SearchByLevels
 from ratt_opt.solvers.maxmin.marginal_tables import BRANCHED, MOST_ROBOTS, Attacks, Choosers, Gains, Path
 from ratt_opt.solvers.maxmin.proof import ElementBranch, MarginalLeaf, UpperProof
@@ -88,13 +88,10 @@ class ChoosingTeam:
         """All attacks that are known by now, the new ones first."""
         known, outcomes = len(self._attacks.order), self._pool.of_outcome
         if len(outcomes) > known:
-            of = np.full((len(outcomes), max(map(len, outcomes))), -1, dtype=np.int64)
-            for row, own in zip(of, outcomes, strict=True):
-                row[: len(own)] = own
             bits = np.left_shift(np.uint64(1), np.arange(len(self.order), dtype=np.uint64))
             members = np.where(self._pool.membership()[:, self.order] > 0, bits, np.uint64(0)).sum(axis=1)
             order = np.concatenate([np.arange(known, len(outcomes)), self._attacks.order])
-            self._attacks = Attacks(members, of, order)
+            self._attacks = Attacks(members, padded(outcomes), order)
         return self._attacks
 
 

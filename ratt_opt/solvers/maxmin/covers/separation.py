@@ -16,6 +16,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import from_triangles
 from ratt_opt.solvers.maxmin.covers.choices import Choices
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
+from ratt_opt.solvers.maxmin.elements import padded
 from ratt_opt.solvers.maxmin.proof import Cover
 
 if TYPE_CHECKING:
@@ -150,10 +151,7 @@ class Separation:
         if len(self._order) < len(of):
             self._update()
             self._order = np.concatenate([np.arange(len(self._order), len(of)), self._order])
-            padded = np.full((len(of), max(map(len, of))), -1, dtype=np.int64)
-            for row, own in zip(padded, of, strict=True):
-                row[: len(own)] = own
-            self._ways = Ways(self.choices, self.partitions.members(), self._inside, padded, self._order)
+            self._ways = Ways(self.choices, self.partitions.members(), self._inside, padded(of), self._order)
         return self._ways
 
     def _update(self) -> None:
