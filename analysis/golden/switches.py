@@ -12,9 +12,9 @@ from ratt_opt.attack.least_sets import search
 from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
-from ratt_opt.solvers.maxmin import descent
 from ratt_opt.solvers.maxmin.adversary import LastingAttacks
 from ratt_opt.solvers.maxmin.covers.search import CoverSearch
+from ratt_opt.solvers.maxmin.descent import RestartedSearch
 from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.node_attacks import NodeAttacks
@@ -54,8 +54,7 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
     "attacks on whole nodes": ((NodeAttacks, "of", _gives(None)),),
     "lasting attacks": ((LastingAttacks, "of", lambda _problem, attack: attack),),
-    "floors": ((descent, "MOST_FLOORS", 0),),
-    "further trees": ((descent.Descent, "_is_given_up", _gives(False)),),
+    "further trees": ((RestartedSearch, "_is_given_up", _gives(False)),),
 }
 """The same, of best plans."""
 ATTACK_SWITCHES = [*STAGE_NAMES, *BOUNDS]

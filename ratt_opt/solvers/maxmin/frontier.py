@@ -44,18 +44,16 @@ class ClosingRule:
 
     Below that plan's level, proved or not, no better one is to be found. A new outcome may lower the level; then what
     was closed may have to be opened again.
-
-    ``floor`` : only plans above it are looked for, while it is above that level; see ``descent.py``.
     """
 
     def __init__(self, plans: Candidates, gap: float) -> None:
-        self.plans, self.gap, self.floor = plans, gap, -np.inf
+        self.plans, self.gap = plans, gap
         self._rounding = MARGINS * plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
-        """Value of the best plan under the known outcomes, or the floor."""
-        return max(self.plans.level, self.floor)
+        """Value of the best plan under the known outcomes."""
+        return self.plans.level
 
     @property
     def better(self) -> float:

@@ -15,7 +15,6 @@ import numpy as np
 
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.candidates import Walk
-from ratt_opt.solvers.maxmin.frontier import ClosingRule
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -130,7 +129,6 @@ class SearchByLevels(ABC):
 
     def __init__(self, known: Known, elements: Elements) -> None:
         self._known, self._elements, self.upper = known, elements, np.inf
-        self._rule = ClosingRule(known.incumbent.candidates, known.rule.gap)  # without the other search's floor
         self._searches: dict[int, LevelSearch] = {}
         self._runs, self._share, self._left = FIRST_RUNS, 0, FIRST_RUNS
         self._in_vain = np.inf
@@ -157,7 +155,7 @@ class SearchByLevels(ABC):
         until = budget.nodes + most_nodes
         self.upper, told = min(self.upper, upper), budget.nodes
         while True:
-            if self.upper <= self._rule.better or self._rule.closes(self.upper):
+            if self.upper <= self._known.rule.better or self._known.rule.closes(self.upper):
                 return Stop.GAP
             if (stop := budget.stop() or turns.stop()) is not None:
                 return stop
@@ -206,4 +204,4 @@ class SearchByLevels(ABC):
 
     def _level(self) -> float:
         floor = self._known.incumbent.candidates.level
-        return max(floor + SHARES[self._share] * (self.upper - floor), self._rule.better)
+        return max(floor + SHARES[self._share] * (self.upper - floor), self._known.rule.better)

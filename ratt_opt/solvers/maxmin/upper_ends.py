@@ -11,7 +11,7 @@ from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.maxmin.covers.search import CoverSearch
-from ratt_opt.solvers.maxmin.descent import Descent
+from ratt_opt.solvers.maxmin.descent import RestartedSearch
 from ratt_opt.solvers.maxmin.elements import Elements
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.turns import TurnsUntil
@@ -38,7 +38,7 @@ class UpperEnds:
     """The smallest of all bounds, with its proof; may be interrupted at any point, as all of them may."""
 
     def __init__(self, known: Known, *, in_depth: bool = True) -> None:
-        self.concave = Descent(known)
+        self.concave = RestartedSearch(known)
         self._known = known
         self._in_depth = _search_in_depth(known) if in_depth else None
         self._turn = float(TURN)
@@ -69,7 +69,7 @@ class UpperEnds:
             most = self._turn
             self._turn *= GROWTH
 
-    def _ends(self) -> list[Descent | SearchByLevels]:
+    def _ends(self) -> list[RestartedSearch | SearchByLevels]:
         return [self.concave] if self._in_depth is None else [self.concave, self._in_depth]
 
     def _run_concave(self, turns: Turns, progress: Progress, nodes: int) -> Stop:

@@ -37,7 +37,6 @@ __all__ = [
     "LAZY",
     "LISTED",
     "MARGINALS_ALONE",
-    "NEVER_NEARLY",
     "NO_GROUPS",
     "NO_PLANS_LISTED",
     "SMALL_TREES",
@@ -46,10 +45,10 @@ __all__ = [
     "by_marginals",
     "covers",
     "exact_attacks",
-    "floors_used",
     "link_attacks",
     "marginals",
     "open_nodes",
+    "trees_begun",
 ]
 
 NO_PLANS_LISTED: Way = {(exhaustive, "LARGEST_SEARCH"): 0, (solve, "FEW_PLANS"): 0}
@@ -65,11 +64,9 @@ BLIND: Way = EXCHANGED | {(adversary.Adversary, "_quick_attack"): lambda *_: Att
 """Quick attacks see nothing: only exact ones tell good plans from bad."""
 NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0}
 """Nothing is known of small groups beforehand."""
-TREES_SOON: Way = {(descent, "FIRST_NODES"): 1, (descent, "NARROW"): 0.0}
-"""Trees with floors come soon, as where searches of large teams are long."""
+TREES_SOON: Way = {(descent, "FIRST_NODES"): 1, (descent, "NEARLY"): 0.0}
+"""Further trees come soon, as where searches of large teams are long."""
 SMALL_TREES: Way = TREES_SOON | {(descent, "TREE_NODES"): 2}
-NEVER_NEARLY: Way = {(descent, "NEARLY"): 0.0}
-"""No floor counts as nearly reached."""
 
 _HOWEVER_MUCH_ROBOTS_SEE: Way = {
     (upper_ends.UpperEnds, "_run_concave"): lambda *_: Stop.NODES,
@@ -101,16 +98,16 @@ def by_marginals(found: MaxMinResult) -> bool:
     return found.proof is not None and any(isinstance(node, MarginalLeaf) for node in found.proof.tree)
 
 
-def floors_used(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, float]]:
-    """Best plan, floor and bound of every tree from now on, as it began."""
-    used: list[tuple[float, float, float]] = []
+def trees_begun(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """The number of nodes at which each further tree begins from now on."""
+    begun: list[int] = []
 
-    def next_floor(self: descent.Descent, plain=descent.Descent._next_floor) -> float:
-        used.append((self.first.incumbent.candidates.level, plain(self), self.upper))
-        return used[-1][1]
+    def begin_next(search: descent.RestartedSearch, plain=descent.RestartedSearch._begin_next) -> None:
+        begun.append(search.first.incumbent.budget.nodes)
+        plain(search)
 
-    monkeypatch.setattr(descent.Descent, "_next_floor", next_floor)
-    return used
+    monkeypatch.setattr(descent.RestartedSearch, "_begin_next", begin_next)
+    return begun
 
 
 def link_attacks(asked: object) -> Way:

@@ -15,7 +15,7 @@ from tests.ways import go
 
 @pytest.fixture(autouse=True)
 def depth_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Small teams, searched as large ones are: nothing is listed, and trees with floors come soon."""
+    """Small teams, searched as large ones are: nothing is listed, and further trees come soon."""
     go(monkeypatch, NO_GROUPS, UNLISTED, TREES_SOON)
 
 

@@ -1,4 +1,4 @@
-"""Trees with floors lose no plan, prove what they say, and leave a valid bracket wherever the search stops."""
+"""Restarted searches lose no plan, prove what they say, and leave a valid bracket wherever they stop."""
 
 from __future__ import annotations
 
@@ -8,26 +8,21 @@ import numpy as np
 import pytest
 
 from ratt_opt import certify, exhaustive_optimum, random_scenario, solve_maxmin, verify_certificate
-from tests.solvers.maxmin.engine import BLIND, NEVER_NEARLY, SMALL_TREES, UNLISTED, floors_used
+from tests.solvers.maxmin.engine import BLIND, SMALL_TREES, UNLISTED, trees_begun
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, small_team
 from tests.ways import go
 
-"""(N, sensing, links)."""
 
-pytestmark = pytest.mark.usefixtures("floors")
-
-
-@pytest.fixture
-def floors(monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, float, float]]:
-    """Many small trees, as where searches of large teams are long; best plan, floor and bound as they began."""
+@pytest.fixture(autouse=True)
+def small_trees(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many small trees, as where searches of large teams are long."""
     go(monkeypatch, UNLISTED, SMALL_TREES)
-    return floors_used(monkeypatch)
 
 
 @pytest.mark.parametrize(("seed", "sees_late"), [*((k, False) for k in range(60)), *((k, True) for k in range(30))])
 def test_agrees_with_exhaustive_search(seed: int, sees_late: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also where attacks see nothing until a plan is attacked exactly: the level falls below floors put above it."""
+    """Also where attacks see nothing until a plan is attacked exactly: the level falls after trees have ended."""
     if sees_late:
         go(monkeypatch, BLIND)
     problem = small_team(seed)
@@ -47,17 +42,12 @@ def test_an_optimum_of_nothing_ends() -> None:
     assert found.upper == pytest.approx(0, abs=1e-9)
 
 
-def test_floors_lie_between_the_best_plan_and_the_bound_and_come_down(
-    floors: list[tuple[float, float, float]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    go(monkeypatch, NEVER_NEARLY)
+def test_the_bound_comes_down_from_tree_to_tree(monkeypatch: pytest.MonkeyPatch) -> None:
+    trees = trees_begun(monkeypatch)
     problem = random_scenario(8, 6, alpha_s=1, alpha_c=14, seed=1).problem()
     uppers = []
     result = solve_maxmin(problem, gap=1e-7, progress=lambda *state: uppers.append(state[2]))
-    finite = [one for one in floors if np.isfinite(one[1])]
-    assert len(finite) > 2
-    assert all(level < floor < upper for level, floor, upper in finite)
-    assert finite[-1][1] < finite[0][1]
+    assert len(trees) > 1
     assert np.all(np.diff(uppers) <= 1e-12 * result.upper)
     assert proved_upper(problem, result.proof) <= result.upper * (1 + 1e-10)
 
