@@ -14,11 +14,11 @@ from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin.adversary import LastingAttacks
 from ratt_opt.solvers.maxmin.covers.search import CoverSearch
-from ratt_opt.solvers.maxmin.descent import RestartedSearch
 from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
+from ratt_opt.solvers.maxmin.upper_ends import RestartedSearch
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:

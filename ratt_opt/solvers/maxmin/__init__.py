@@ -2,10 +2,9 @@
 
 Open ``solve.py`` first. ``upper_ends.py`` lets the searches for the upper end take turns.
 
-- Concave relaxations: ``descent.py`` searches tree after tree; ``search.py`` is the loop over the nodes of one.
-  ``frontier.py`` holds the nodes and the closing rule, ``relaxation.py`` the linear program and its cuts,
-  ``winners.py`` which group of an outcome counts, ``small_groups.py`` what small ones can reach, ``division.py`` what
-  a node is divided by.
+- Concave relaxations, tree after tree: ``search.py`` is the loop over the nodes of one. ``frontier.py`` holds the nodes
+  and the closing rule, ``relaxation.py`` the linear program and its cuts, ``winners.py`` which group of an outcome
+  counts, ``small_groups.py`` what small ones can reach, ``division.py`` what a node is divided by.
 - Searches in depth, if robots see few targets: ``levels.py``, by ``covers/`` or by marginal gains
   (``marginal_search.py``, ``marginal_tables.py``).
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.search import Known, Progress
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.upper_ends import Turns
 
 __all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
 

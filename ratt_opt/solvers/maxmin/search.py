@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.upper_ends import Turns
 
     Progress = Callable[[int, float, float], None] | None
 

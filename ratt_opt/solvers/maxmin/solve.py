@@ -21,11 +21,9 @@ from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
-from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import Known
-from ratt_opt.solvers.maxmin.turns import Turns
-from ratt_opt.solvers.maxmin.upper_ends import UpperEnds
+from ratt_opt.solvers.maxmin.upper_ends import Turns, UpperEnds, monotone_bound
 from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap

@@ -1,7 +1,18 @@
-"""The upper ends of a search in turns: concave relaxations, and a search in depth if robots see few targets."""
+"""The upper ends of a search in turns: concave relaxations, and a search in depth if robots see few targets.
+
+Before any of them, monotonicity bounds all plans: no plan gives a group more information than all elements of its
+robots together, and the criteria do not decrease with information. As a proof it is one tangent a group, which touches
+there: what a plan lacks of that information only lowers it. Several groups are cases; one of them wins.
+
+Concave relaxations are searched tree after tree. A tree that takes too many nodes is given up for one that begins with
+the outcomes, cuts and plans found by then: the next tree meets at its root what the one before met in some deep node.
+Trees after the first are searched in depth: below a node that is closed, divisions that its proof does not rely on are
+taken back (``frontier.py``), which saves the siblings that were not searched yet. The tree of smallest bound is kept.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,19 +22,31 @@ from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 from ratt_opt.solvers.maxmin.covers.search import CoverSearch
-from ratt_opt.solvers.maxmin.descent import RestartedSearch
 from ratt_opt.solvers.maxmin.elements import Elements
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
-from ratt_opt.solvers.maxmin.turns import TurnsUntil
+from ratt_opt.solvers.maxmin.proof import Leaf, TangentCut, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.search import BranchAndBound
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt.budget import Budget
+    from ratt_opt.problem import Attack, Problem
+    from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.levels import SearchByLevels
-    from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.search import Known, Progress
-    from ratt_opt.solvers.maxmin.turns import Turns
 
-__all__ = ["UpperEnds"]
+__all__ = ["MonotoneBound", "RestartedSearch", "Turns", "UpperEnds", "monotone_bound"]
 
+SEARCH_SHARE = 0.25
+"""Share of the time left that is searched before an unproved plan is attacked exactly."""
+FIRST_NODES = 100
+"""Nodes of the first tree: most searches end within. With 20, ten robots took a third longer."""
+NEARLY, MORE_NODES = 5e-3, 500
+"""Relative width at which that tree is nearly done, and then goes on to this many nodes: log-det, (3, 107) and (5,
+107), end after 220 and 471 nodes, and not within 15 seconds if they are given up at 100."""
+TREE_NODES, GROWTH = 100, 1.5
+"""Nodes of a later tree before it is given up, and how many times as many the next one then has."""
 SUMS = frozenset((TraceObjective.compiled_code, LogDetObjective.compiled_code))
 """Criteria that are sums over targets."""
 UNSEEN = 0.25
@@ -32,6 +55,136 @@ TURN, GROWTH = 20, 2.0
 """Nodes of the concave search's second turn, after its root, and how many times as many each later one has."""
 NODES_IN_DEPTH = 10
 """Nodes that the search in depth has for each of the concave one's."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MonotoneBound:
+    """Claim: ``Phi* <= upper``, as ``proof`` shows."""
+
+    upper: float
+    proof: UpperProof
+
+
+def monotone_bound(problem: Problem, attack: Attack) -> MonotoneBound:
+    """Bound the worst-case value of every plan by what all elements of a group are worth under one attack.
+
+    Relies on an information criterion, whose values do not decrease with information.
+
+    Parameters
+    ----------
+    attack : within the budgets
+    """
+    objective = problem.information_objective
+    groups = tuple(sorted(tuple(sorted(group)) for group in problem.groups_left(attack) if group)) or ((),)
+    of_robot = np.array([objective.information[choice].sum(axis=0) for choice in problem.choices])
+    points = [np.asarray(objective.prior_information + of_robot[list(group)].sum(axis=0)) for group in groups]
+    targets = [objective.tangent_targets(point, -np.inf, 1)[0] for point in points]
+    cuts = (
+        TangentCut(attack=0, group=group, point=point, target=target)
+        for group, point, target in zip(groups, points, targets, strict=True)
+    )
+    leaves = (Leaf(cuts=(k,), weights=(1.0,)) for k in range(len(groups)))
+    above = () if len(groups) == 1 else (WinnerBranch(attack=0, parts=groups),)
+    return MonotoneBound(
+        upper=float(objective.value(np.array(points)).max()) + objective.rounding,
+        proof=UpperProof(attacks=(attack,), cuts=tuple(cuts), tree=(*above, *leaves)),
+    )
+
+
+class Turns:
+    """Says when it is time to stop searching: for good, or to prove the best plan's value."""
+
+    def __init__(self, budget: Budget, incumbent: Incumbent) -> None:
+        self.budget, self.incumbent = budget, incumbent
+        self._turn = budget.part(SEARCH_SHARE)
+
+    @property
+    def seconds_left(self) -> float:
+        """Seconds until it is time to stop, as far as that is known."""
+        left = self.budget.seconds_left
+        return left if self.incumbent.is_proved else min(left, self._turn.seconds_left)
+
+    def stop(self) -> Stop | None:
+        """Why to stop searching now, if at all."""
+        if (stop := self.budget.stop()) not in {None, Stop.NODES}:
+            return stop
+        return Stop.TIME if self._turn.stop() is Stop.TIME and not self.incumbent.is_proved else None
+
+    def prove(self) -> bool:
+        """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
+        goes_on = self.incumbent.prove()
+        self._turn = self.budget.part(SEARCH_SHARE)
+        return goes_on
+
+
+class TurnsUntil(Turns):
+    """The turns of a search that stops as at a limit of nodes, too, when ``is_enough`` says so."""
+
+    def __init__(self, turns: Turns, is_enough: Callable[[], bool]) -> None:
+        self.budget, self.incumbent, self._turns, self._is_enough = turns.budget, turns.incumbent, turns, is_enough
+
+    @property
+    def seconds_left(self) -> float:
+        """As of the turns themselves."""
+        return self._turns.seconds_left
+
+    def stop(self) -> Stop | None:
+        """Why to stop searching now, if at all."""
+        return self._turns.stop() or (Stop.NODES if self._is_enough() else None)
+
+
+class RestartedSearch:
+    """The search of one problem by such trees; it may be interrupted at any point, as each of them may."""
+
+    def __init__(self, known: Known) -> None:
+        self._known = known
+        self.first = self._best = self._current = BranchAndBound(known)
+        self._tree_nodes, self._until = float(TREE_NODES), FIRST_NODES
+
+    @property
+    def upper(self) -> float:
+        """Proved upper bound on the optimum: the smaller one of the best tree so far and of the one in work."""
+        return self._lowest().upper
+
+    def proof(self) -> UpperProof:
+        """The proof of :attr:`upper`."""
+        return self._lowest().proof()
+
+    def run(self, turns: Turns, progress: Progress) -> Stop:
+        """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
+        while True:
+            stop = self._current.run(TurnsUntil(turns, self._is_given_up), self._told(progress))
+            if stop is Stop.GAP:
+                return stop
+            if (reason := turns.budget.stop() or turns.stop()) is not None:
+                return reason
+            if self._current is self.first and self._until < MORE_NODES and self._is_nearly_done():
+                self._until = MORE_NODES
+            else:
+                self._begin_next()
+
+    def _is_given_up(self) -> bool:
+        """Whether the tree in work has taken too many nodes."""
+        return self._known.incumbent.budget.nodes >= self._until
+
+    def _is_nearly_done(self) -> bool:
+        return self.upper - self._known.incumbent.candidates.level <= NEARLY * abs(self.upper)
+
+    def _lowest(self) -> BranchAndBound:
+        return min(self._best, self._current, key=lambda tree: tree.upper)
+
+    def _told(self, progress: Progress) -> Progress:
+        if progress is None:
+            return None
+        return lambda nodes, lower, upper: progress(nodes, lower, min(upper, self._best.upper))
+
+    def _begin_next(self) -> None:
+        """Put a tree of more nodes in the place of the one in work."""
+        if self._current is not self.first:
+            self._tree_nodes *= GROWTH
+        self._best = self._lowest()
+        self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
+        self._current = BranchAndBound(self._known, depth_first=True)
 
 
 class UpperEnds:

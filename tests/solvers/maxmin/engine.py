@@ -13,7 +13,6 @@ from ratt_opt.solvers import exhaustive, ratt
 from ratt_opt.solvers.by_values import plan_tree
 from ratt_opt.solvers.maxmin import (
     adversary,
-    descent,
     marginal_search,
     outcome_pool,
     small_groups,
@@ -64,9 +63,9 @@ BLIND: Way = EXCHANGED | {(adversary.Adversary, "_quick_attack"): lambda *_: Att
 """Quick attacks see nothing: only exact ones tell good plans from bad."""
 NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0}
 """Nothing is known of small groups beforehand."""
-TREES_SOON: Way = {(descent, "FIRST_NODES"): 1, (descent, "NEARLY"): 0.0}
+TREES_SOON: Way = {(upper_ends, "FIRST_NODES"): 1, (upper_ends, "NEARLY"): 0.0}
 """Further trees come soon, as where searches of large teams are long."""
-SMALL_TREES: Way = TREES_SOON | {(descent, "TREE_NODES"): 2}
+SMALL_TREES: Way = TREES_SOON | {(upper_ends, "TREE_NODES"): 2}
 
 _HOWEVER_MUCH_ROBOTS_SEE: Way = {
     (upper_ends.UpperEnds, "_run_concave"): lambda *_: Stop.NODES,
@@ -102,11 +101,11 @@ def trees_begun(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The number of nodes at which each further tree begins from now on."""
     begun: list[int] = []
 
-    def begin_next(search: descent.RestartedSearch, plain=descent.RestartedSearch._begin_next) -> None:
+    def begin_next(search: upper_ends.RestartedSearch, plain=upper_ends.RestartedSearch._begin_next) -> None:
         begun.append(search.first.incumbent.budget.nodes)
         plain(search)
 
-    monkeypatch.setattr(descent.RestartedSearch, "_begin_next", begin_next)
+    monkeypatch.setattr(upper_ends.RestartedSearch, "_begin_next", begin_next)
     return begun
 
 

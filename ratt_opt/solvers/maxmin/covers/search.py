@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.levels import Outcome
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.search import Known
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.upper_ends import Turns
 
 __all__ = ["CoverSearch"]
 
