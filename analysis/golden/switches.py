@@ -16,7 +16,6 @@ from ratt_opt.solvers.maxmin.adversary import LastingAttacks
 from ratt_opt.solvers.maxmin.covers.search import CoverSearch
 from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
-from ratt_opt.solvers.maxmin.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.upper_ends import RestartedSearch
 from ratt_opt.solvers.maxmin.winners import GroupProofs
@@ -52,7 +51,6 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
-    "attacks on whole nodes": ((NodeAttacks, "of", _gives(None)),),
     "lasting attacks": ((LastingAttacks, "of", lambda _problem, attack: attack),),
     "further trees": ((RestartedSearch, "_is_given_up", _gives(False)),),
 }

@@ -57,9 +57,8 @@ CUT_OFF = 1e-9
 SUPPORT = 1e-6
 """Elements with less weight are not part of a mixture."""
 COMPARED = 8
-"""Outcomes of which the one that the fewest groups may win is divided on. Of 20 robots at (0, 180), max-eigenvalue,
-before nodes were attacked whole, 1 left 5 % open after 12 s and 2 % after 30 s; 8 left 1 and 5 % after 12 s and closed
-in 16 s; 32 left 5 % after 12 s."""
+"""Outcomes of which the one that the fewest groups may win is divided on. Of 20 robots at (0, 180), max-eigenvalue, 1
+left 5 % open after 12 s and 2 % after 30 s; 8 left 1 and 5 % after 12 s and closed in 16 s; 32 left 5 % after 12 s."""
 
 
 class WinnerDivision:

@@ -18,7 +18,6 @@ from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division, WinnerDivision
 from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.frontier import Backjumps, ClosingRule, Frontier
-from ratt_opt.solvers.maxmin.node_attacks import NodeAttacks
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
 from ratt_opt.solvers.maxmin.relaxation import CUTS_A_ROUND, CutRounds, CutStore
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups, SmallTables
@@ -56,7 +55,6 @@ class Known:
     cuts: CutStore
     proofs: GroupProofs
     tables: SmallTables
-    node_attacks: NodeAttacks | None
 
     @classmethod
     def of(cls, task: Task, incumbent: Incumbent, gap: float) -> Known:
@@ -70,7 +68,6 @@ class Known:
             cuts=cuts,
             proofs=GroupProofs(cuts, rule, incumbent.budget),
             tables=SmallTables(task, pool),
-            node_attacks=NodeAttacks.of(task.problem, pool, incumbent.budget),
         )
 
 
@@ -86,7 +83,6 @@ class BranchAndBound:
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
-        self.node_attacks = known.node_attacks
         self.backjumps = Backjumps(self.frontier, self.cuts)
         self.root = self._first_node()
         self.frontier.push(self.root)
@@ -138,7 +134,7 @@ class BranchAndBound:
 
     def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop if it is neither."""
-        narrowed = self._narrow(node) if self.rule.level > 0 else node
+        narrowed = self.small.narrow(node, self.rule.better) if self.rule.level > 0 else node
         if narrowed is None:
             return None
         self.frontier.current = node = narrowed
@@ -170,18 +166,6 @@ class BranchAndBound:
                 else:
                     self.division.divide(node, relaxed)
                 return None
-
-    def _narrow(self, node: TreeNode) -> TreeNode | None:
-        """What remains without any linear program; ``None`` if the node is divided, or closed.
-
-        The whole node is attacked if some outcome's winner is open: elsewhere relaxed plans find what hurts.
-        """
-        better = self.rule.better
-        left = self.small.narrow(node, better)
-        if left is None or self.node_attacks is None or not (self.winners.at(left) < 0).any():
-            return left
-        self.frontier.current = left
-        return self.small.narrow(left, better) if self.node_attacks.learn(left.choices, better) else left
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one if it is better.

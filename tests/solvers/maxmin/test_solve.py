@@ -246,3 +246,11 @@ def test_what_is_known_of_the_link_attacks_is_not_asked_again(monkeypatch: pytes
     go(monkeypatch, link_attacks(asked))
     assert solve_maxmin(problem, alpha_cs=plan.alpha_cs) == expected
     assert ratt(problem, alpha_cs=plan.alpha_cs) == plan
+
+
+@pytest.mark.slow
+def test_twenty_robots_of_which_many_groups_may_win_close() -> None:
+    """One tree leaves 6 % open after 30 s."""
+    problem = random_scenario(20, 20, alpha_s=2, alpha_c=171, seed=0).problem("maxeig")
+    found = solve_maxmin(problem, gap=5e-5, max_nodes=3000)
+    assert found.upper - found.lower <= 1e-4 * found.upper
