@@ -1,4 +1,4 @@
-"""Warm starts: a scenario that moves step by step, planned anew cold and from the plan and the result before.
+"""Warm starts: a scenario that moves step by step, planned anew cold and from the plan before.
 
 Run as ``python -m analysis.benchmarks.warm [--robots 10 20] [--objectives ...] [--steps 50] [--gap G] [--seed S]``;
 with ``--leaves`` it says what proofs of the step before still prove. Robots carry out the best plan of each step and
@@ -42,7 +42,7 @@ def moved(scenario: Scenario, plan: IntArray) -> Scenario:
     return scenario.replace(robots=tuple(robots), targets=tuple(targets))
 
 
-def timed(problem: Problem, gap: float, start: IntArray | MaxMinResult | None) -> tuple[MaxMinResult, float]:
+def timed(problem: Problem, gap: float, start: MaxMinResult | None) -> tuple[MaxMinResult, float]:
     """A result and its processor seconds."""
     began = process_time()
     result = solve_maxmin(problem, gap=gap, start=start)
@@ -56,20 +56,15 @@ def measure(scenario: Scenario, name: str, steps: int, gap: float) -> dict[str, 
     for _ in range(steps):
         scenario = moved(scenario, before.elements)
         problem = scenario.problem(name)
-        (cold, slow), (plan, fair), (warm, fast) = (
-            timed(problem, gap, start) for start in (None, before.elements, before)
-        )
-        seconds.append((slow, fair, fast))
-        nodes.append((cold.nodes, plan.nodes, warm.nodes))
+        (cold, slow), (warm, fast) = (timed(problem, gap, start) for start in (None, before))
+        seconds.append((slow, fast))
+        nodes.append((cold.nodes, warm.nodes))
         worst = max(worst, warm.lower - cold.upper, cold.lower - warm.upper)
         before = warm
     times = np.array(seconds)
-    row: dict[str, Any] = {
-        f"{kind}_s": float(np.median(times[:, k])) for k, kind in enumerate(("cold", "plan", "result"))
-    }
-    row |= {"speedup_plan": float(np.median(times[:, 0] / times[:, 1]))}
-    row |= {"speedup_result": float(np.median(times[:, 0] / times[:, 2]))}
-    row |= {f"{kind}_nodes": int(np.sum(nodes, axis=0)[k]) for k, kind in enumerate(("cold", "plan", "result"))}
+    row: dict[str, Any] = {f"{kind}_s": float(np.median(times[:, k])) for k, kind in enumerate(("cold", "warm"))}
+    row |= {"speedup": float(np.median(times[:, 0] / times[:, 1]))}
+    row |= {f"{kind}_nodes": int(np.sum(nodes, axis=0)[k]) for k, kind in enumerate(("cold", "warm"))}
     return row | {"brackets_apart": worst}
 
 

@@ -21,7 +21,6 @@ import numpy as np
 from ratt_opt._validation import FloatArray, readonly
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.evaluation_error import evaluation_error
-from ratt_opt.setfunctions.information import symmetric_inverse
 from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
@@ -95,22 +94,10 @@ class ChangedProblem(Problem):
         proof = result.proof
         return result if proof is None else replace(result, proof=proof.moved(self._lifted))
 
-    def lowered(self, result: Proved) -> Proved:
-        """An earlier result of ``whole``, or of a similar problem, as one of this problem: to start from it."""
-        proof, shape = result.proof, self.whole.information_objective.prior.shape
-        if not self.is_changed or proof is None:
-            return result
-        if any(cut.point.shape != shape for cut in proof.cuts):
-            return replace(result, proof=None)
-        return replace(result, proof=proof.moved(self._lowered))
-
     def _lifted(self, point: FloatArray) -> FloatArray:
         added = self.basis @ (point - self.information_objective.prior_information) @ np.swapaxes(self.basis, -1, -2)
         lifted = self.whole.information_objective.prior_information + added
         return np.asarray((lifted + np.swapaxes(lifted, -1, -2)) / 2)
-
-    def _lowered(self, point: FloatArray) -> FloatArray:
-        return symmetric_inverse(np.swapaxes(self.basis, -1, -2) @ symmetric_inverse(point) @ self.basis)
 
 
 def sizes_of(matrices: FloatArray) -> FloatArray:

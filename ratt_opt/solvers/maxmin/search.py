@@ -92,13 +92,6 @@ class BranchAndBound:
         """Proved upper bound on the optimum: the largest bound of a node, or of a group closed for all plans."""
         return max(self.frontier.bound, self.winners.finished, self.incumbent.proved.lower)
 
-    def use(self, cuts: list[int]) -> None:
-        """Let the first programs hold these cuts, those that are usable everywhere."""
-        winners = [self.winners.of(self.root, int(outcome)) for outcome in self.cuts.outcomes[cuts]]
-        for k, winner in zip(cuts, winners, strict=True):
-            if winner == self.cuts.groups[k]:
-                self.rounds.use(k)
-
     def proof(self) -> UpperProof:
         """The proof of the bound: winners decided for all plans, then the tree."""
         return upper_proof(self.winners.above(self.root), self.pool.attack, self.cuts.record)

@@ -14,7 +14,7 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.measured import measured_coordinates
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
-from ratt_opt.problem import Attack, check_problem
+from ratt_opt.problem import Attack, Plan, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.search import search_any
@@ -24,7 +24,6 @@ from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.search import Known
 from ratt_opt.solvers.maxmin.upper_ends import Turns, UpperEnds, monotone_bound
-from ratt_opt.solvers.maxmin.warm_start import WarmStart
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.problem import Plan, Problem
+    from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.search import Progress
 
 __all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "search_in_all_coordinates", "solve_maxmin"]
@@ -71,8 +70,8 @@ def solve_maxmin(
     alpha_cs : sensing attacks that the link attacks are worth, if RATT was asked before
     max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
-    start : a plan (N,), or an earlier result of a similar problem: its plan, outcomes and cuts are used as far as the
-        problem still allows them; what is enumerated needs none. Changes how long a search takes, not what it claims
+    start : a plan (N,), or an earlier result of a similar problem, whose plan is used if the problem still allows it;
+        what is enumerated needs none. Changes how long a search takes, not what it claims
 
     Raises
     ------
@@ -87,9 +86,8 @@ def solve_maxmin(
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap, alpha_cs)
     searched = with_unit_prior(measured_coordinates(problem))
-    earlier = searched.lowered(start) if isinstance(start, MaxMinResult) else start
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.outward(lower, upper)))
-    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, earlier).outward(searched)
+    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, start).outward(searched)
     return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
@@ -107,7 +105,7 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
 
     ``in_depth`` : whether the proof may be that of a search in depth
     """
-    warm = WarmStart.of(problem, start)
+    earlier = _plan_of(problem, start)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
@@ -115,12 +113,9 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     search: UpperEnds | None = None
     try:
         pool.list_all()
-        outcomes = warm.add_outcomes(pool)
-        task = Task.of(problem)
-        incumbent.start(_first_plans(problem, first, warm, budget))
+        incumbent.start(_first_plans(problem, first, earlier, budget))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = UpperEnds(Known.of(task, incumbent, max(gap - PROVED, 0.0)), in_depth=in_depth)
-        search.concave.first.use(warm.add_cuts(search.concave.first.cuts, outcomes))
+        search = UpperEnds(Known.of(Task.of(problem), incumbent, max(gap - PROVED, 0.0)), in_depth=in_depth)
         stop = _search_and_prove(search, Turns(budget, incumbent), progress)
         if incumbent.is_proved and not budget.is_over:
             break_ties(incumbent, budget)
@@ -131,10 +126,25 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     return _result(problem, incumbent, search, stop, gap)
 
 
-def _first_plans(problem: Problem, first: IntArray, warm: WarmStart, budget: Budget) -> list[IntArray]:
+def _plan_of(problem: Problem, start: ArrayLike | Plan | MaxMinResult | None) -> IntArray | None:
+    """(N,) the plan to start from; ``None`` if there is none, or that of an earlier result is not one any more.
+
+    Raises ``InputError`` : a plan is not one element per robot.
+    """
+    if start is None:
+        return None
+    if not isinstance(start, MaxMinResult):
+        return problem.check_plan(start.elements if isinstance(start, Plan) else start)
+    try:
+        return problem.check_plan(start.elements)
+    except InputError:
+        return None
+
+
+def _first_plans(problem: Problem, first: IntArray, earlier: IntArray | None, budget: Budget) -> list[IntArray]:
     """RATT's plan, and one that was best a step before; the plans of other planners if there is none."""
-    if warm.plan is not None:
-        return [first, warm.plan]
+    if earlier is not None:
+        return [first, earlier]
     return [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
 
 
