@@ -101,13 +101,8 @@ class WinnerDivision:
     def divide(self, node: TreeNode, outcome: int) -> list[TreeNode]:
         """Children in which the winner of an outcome is decided, or soon will be; those that need a search.
 
-        Groups that a bound closes within the node's choices need none. A single robot that may win
-        with some of its elements only is divided into those and the others, so that the latter close.
+        Groups that a bound closes within the node's choices need none.
         """
-        return self._divide_lone_robot(node, outcome) or self.divide_groups(node, outcome)
-
-    def divide_groups(self, node: TreeNode, outcome: int) -> list[TreeNode]:
-        """The same by the groups alone."""
         parts, open_children = [], []
         for group in self.pool.of_outcome[outcome]:
             proof = self._proofs.find(group, node.choices)
@@ -119,21 +114,6 @@ class WinnerDivision:
             parts.append((self.pool.groups[group], child))
         node.split = Split(by_winner=True, subject=outcome, parts=tuple(parts))
         return open_children
-
-    def _divide_lone_robot(self, node: TreeNode, outcome: int) -> list[TreeNode]:
-        groups = self.pool.of_outcome[outcome]
-        winner = max(groups, key=lambda g: (len(self.pool.groups[g]), -g))
-        for group in groups:
-            if len(self.pool.groups[group]) != 1 or group == winner:
-                continue
-            (robot,) = self.pool.groups[group]
-            choice = node.choices[robot]
-            weak = self.task.singles[choice] <= self.frontier.rule.level
-            if weak.any() and not weak.all():
-                children = [node.child(with_choice(node.choices, robot, choice[part])) for part in (weak, ~weak)]
-                node.divide(robot, children, self.task)
-                return children
-        return []
 
 
 class Division:

@@ -155,7 +155,7 @@ class SmallGroups:
             above = self._two_above(outcome, level, domains)
             if len(above) > 1:
                 return node
-            children = self.division.divide_groups(node, outcome)
+            children = self.division.divide(node, outcome)
             if len(children) != 1 or not above or children[0].winners[outcome] != above[0]:
                 for child in children:  # of groups that were not proved to be below the level
                     self.division.frontier.push(child)
