@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address, check_numbers, checked, function
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.solvers.maxmin.covers.choices import Choices
-    from ratt_opt.solvers.maxmin.covers.program import CoverSums
     from ratt_opt.solvers.maxmin.covers.separation import Separation
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.proof import Cover
 
-__all__ = ["BY_COVER", "BY_SUM", "Dive", "DiveProof"]
+__all__ = ["BY_COVER", "BY_SUM", "CoverSums", "Dive", "DiveProof"]
 
 BY_COVER, BY_SUM, TRIED = 0, 1, 2
 """What forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
@@ -29,6 +28,11 @@ FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
 """Nodes of a record: it grows, to 160 MB at most."""
 MOST_WAYS = 10
 """Partitions that are tried at a node, those that last led to a dead end first."""
+FIRST_ROOM = 64
+MOST_TRIED = 60
+"""Sums that are looked at: those that were of most use lately."""
+FADING = 0.9
+"""How much of earlier use counts when the next one is found."""
 
 
 class StackRecord(Structure):
@@ -102,6 +106,56 @@ class Record:
         while self.size + more >= len(self._nodes):
             self._nodes = np.concatenate([self._nodes, np.zeros_like(self._nodes)])
         self.record = NodesRecord(self.size, len(self._nodes), address(self._nodes))
+
+
+class SumsRecord(Structure):
+    """``Sums`` of ``native/src/covers.h``."""
+
+    _fields_: ClassVar = [("looked_at", c_int64), *((name, c_void_p) for name in ("terms", "tried", "used"))]
+
+
+class Sums:
+    """Sums of covers by number: what each element counts, ``terms`` (R, E), of which plans have to count ``enough``.
+
+    ``tried`` : (A,) those that are looked at; ``used`` : (R,) how often each was of use; it changes
+
+    Raises
+    ------
+    InputError : a shape or a type is another, or one that is tried is not there.
+    """
+
+    def __init__(self, elements: int, terms: FloatArray, tried: IntArray, used: FloatArray) -> None:
+        self._arrays = (
+            checked("terms", terms, np.float64, (len(used), elements)),
+            checked("tried", tried, np.int64, (len(tried),)),
+            checked("used", used, np.float64, (len(used),), written=True),
+        )
+        check_numbers("tried", tried, 0, len(used))
+        self.terms, self.record = terms, SumsRecord(len(tried), *map(address, self._arrays))
+
+
+class CoverSums:
+    """Sums by number, with the leaf that each stands for."""
+
+    def __init__(self, elements: int) -> None:
+        self._elements, self._terms, self._used = elements, np.zeros((FIRST_ROOM, elements)), np.zeros(FIRST_ROOM)
+        self.leaves: list[CoverLeaf] = []
+
+    def add(self, covers: IntArray, weights: FloatArray, terms: FloatArray) -> None:
+        """Add the covers' weighted sum; ``terms`` : (E,) what each element counts."""
+        number = len(self.leaves)
+        if number == len(self._used):
+            self._terms = np.concatenate([self._terms, np.zeros_like(self._terms)])
+            self._used = np.concatenate([self._used, np.zeros_like(self._used)])
+        self._terms[number] = terms
+        self._used *= FADING
+        self._used[number] = self._used.max() + 1.0
+        self.leaves.append(CoverLeaf(covers=tuple(covers.tolist()), weights=tuple(weights.tolist())))
+
+    def rows(self) -> Sums:
+        """As the loops of a dive read them."""
+        tried = np.argsort(-self._used[: len(self.leaves)], kind="stable")[:MOST_TRIED]
+        return Sums(self._elements, self._terms, tried.astype(np.int64), self._used)
 
 
 class Dive:

@@ -1,8 +1,10 @@
 """The search by covers: at one level after the other, each in depth, with covers as its dead ends (``dive.py``).
 
-From time to time it asks the linear program of the covers known (``program.py``) which of its frames are dead ends:
-sums of covers that the program finds serve from then on. An attack on a plan that meets all covers shows a new one.
-Covers are true for all levels above the one that they were found for, and serve there, too.
+From time to time it asks a linear program which of its frames are dead ends: is there a relaxed plan that meets all
+covers known? Of the program only the multipliers are used: normalised, they combine covers into one condition, of which
+a plan counts at most the sum of its robots' largest terms. Such sums forbid more than each cover does, and serve from
+then on. An attack on a plan that meets all covers shows a new one. Covers are true for all levels above the one that
+they were found for, and serve there, too.
 """
 
 from __future__ import annotations
@@ -11,17 +13,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.highs import LinearProgram, rows_of
 from ratt_opt.solvers.maxmin.covers.choices import MOST_CHOICES
-from ratt_opt.solvers.maxmin.covers.dive import BY_COVER, BY_SUM, Dive, DiveProof
+from ratt_opt.solvers.maxmin.covers.dive import BY_COVER, BY_SUM, CoverSums, Dive, DiveProof
 from ratt_opt.solvers.maxmin.covers.pool import cover_bound
-from ratt_opt.solvers.maxmin.covers.program import CoverProgram, CoverSums
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.levels import LevelSearch, SearchByLevels
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.levels import Outcome
@@ -41,6 +43,96 @@ NEGLIGIBLE = 1e-6
 """Shares that count as none."""
 MOST_COVERS = 20_000
 """Covers that are known at once: a node looks at all of them."""
+LOWEST = -50.0
+"""Of ``v``: how far conditions may be met beyond what is asked counts no further."""
+NO_MULTIPLIER = 1e-9
+"""Multipliers that count as none."""
+MOST_ROWS = 400
+"""Rows of the program; beyond it, half of the covers go that no multiplier used for longest."""
+
+
+class Relaxed:
+    """A relaxed plan ``x`` (E,), its ``v``, and the covers with multipliers: numbers, and weights that sum to 1."""
+
+    __slots__ = ("covers", "v", "weights", "x")
+
+    def __init__(self, x: FloatArray, v: float, covers: IntArray, weights: FloatArray) -> None:
+        self.x, self.v, self.covers, self.weights = x, v, covers, weights
+
+
+class CoverProgram:
+    """Minimise ``v`` so that every cover counts at least ``enough - v`` and each robot's shares of elements sum to 1.
+
+    If ``v > 0``, no plan of the node is worth more than the level.
+    """
+
+    def __init__(self, separation: Separation) -> None:
+        self.enough, self._count, self._pool = separation.enough, separation.count, separation.pool
+        self._n, problem = len(self._count), separation.problem
+        cost = np.zeros(self._n + 1)
+        cost[-1] = 1.0
+        lower = np.zeros(self._n + 1)
+        lower[-1] = LOWEST
+        upper = np.ones(self._n + 1)
+        upper[-1] = np.inf
+        one_each = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in problem.choices], 1.0, 1.0)
+        self._program = LinearProgram(cost, lower, upper, rows=one_each, presolve="off", simplex_strategy=1)
+        self._first, self._robot = problem.n_robots, problem.robot
+        self._rows: list[int] = []
+        self._used: dict[int, int] = {}
+        self._solves = 0
+
+    def add(self, covers: list[int]) -> int:
+        """Add covers that are not in the program yet; how many."""
+        known = set(self._rows)
+        fresh = [k for k in dict.fromkeys(covers) if k not in known]
+        entries = []
+        for k in fresh:
+            self._used[k] = self._solves
+            counted = self._counted(k)
+            columns = np.flatnonzero(counted)
+            entries.append(([*columns.tolist(), self._n], [*counted[columns].tolist(), 1.0]))
+        if fresh:
+            self._program.add_rows(rows_of(entries, self.enough))
+            self._rows.extend(fresh)
+        return len(fresh)
+
+    def solve(self, allowed: BoolArray, seconds: float) -> Relaxed | None:
+        """The program over the elements allowed (E,); ``None`` if HiGHS claims no optimum in time."""
+        self._forget()
+        self._program.bound_columns(np.zeros(self._n), allowed.astype(np.float64))
+        answer = self._program.solve(seconds)
+        self._solves += 1
+        if not answer.is_optimal:
+            return None
+        duals = answer.duals[self._first :]
+        active = np.flatnonzero(duals > NO_MULTIPLIER)
+        covers = np.array(self._rows, dtype=np.int64)[active]
+        for k in covers.tolist():
+            self._used[k] = self._solves
+        weights = duals[active] / duals[active].sum() if len(active) else duals[active]
+        return Relaxed(answer.x[: self._n], float(answer.x[self._n]), covers, weights)
+
+    def lacking(self, relaxed: Relaxed, allowed: BoolArray) -> tuple[float, FloatArray]:
+        """By how much all plans of allowed elements fail the combined condition, and what each element counts (E,)."""
+        if not len(relaxed.covers):
+            return -np.inf, np.zeros(self._n)
+        terms = relaxed.weights @ np.array([self._counted(k) for k in relaxed.covers.tolist()])
+        largest = np.zeros(self._first)
+        np.maximum.at(largest, self._robot[allowed], terms[allowed])
+        return self.enough - float(largest.sum()), terms
+
+    def _counted(self, cover: int) -> FloatArray:
+        """(E,) what each element counts in a cover."""
+        return np.asarray(self._pool.left_out(cover) * self._count)
+
+    def _forget(self) -> None:
+        if len(self._rows) <= MOST_ROWS:
+            return
+        order = sorted(range(len(self._rows)), key=lambda r: self._used[self._rows[r]])
+        gone = np.array(sorted(order[: len(order) // 2]))
+        self._program.delete_rows(gone + self._first)
+        self._rows = [k for r, k in enumerate(self._rows) if r not in set(gone.tolist())]
 
 
 class CoverLevelSearch(LevelSearch):

@@ -15,9 +15,8 @@ from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.solvers.maxmin import marginal_tables
 from ratt_opt.solvers.maxmin.covers.choices import Choices, ChoicesRecord
-from ratt_opt.solvers.maxmin.covers.dive import NODE, STEP, Dive, NodesRecord, StackRecord
+from ratt_opt.solvers.maxmin.covers.dive import NODE, STEP, CoverSums, Dive, NodesRecord, StackRecord, Sums, SumsRecord
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool, CoversRecord
-from ratt_opt.solvers.maxmin.covers.program import CoverSums, Sums, SumsRecord
 from ratt_opt.solvers.maxmin.covers.separation import Ways, WaysRecord
 from ratt_opt.solvers.maxmin.elements import PackedElements
 from ratt_opt.solvers.maxmin.levels import Outcome
