@@ -12,6 +12,7 @@ from ratt_opt.attack.least_sets import search
 from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
+from ratt_opt.solvers.maxmin import division, levels
 from ratt_opt.solvers.maxmin.adversary import LastingAttacks
 from ratt_opt.solvers.maxmin.covers.search import CoverSearch
 from ratt_opt.solvers.maxmin.frontier import Backjumps
@@ -52,6 +53,8 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
     "lasting attacks": ((LastingAttacks, "of", lambda _problem, attack: attack),),
+    "dividing by what cuts lose": ((division, "FLAT", float("inf")),),
+    "levels above the best plan": ((levels, "SHARES", (0.0,)),),
     "further trees": ((RestartedSearch, "_is_given_up", _gives(False)),),
 }
 """The same, of best plans."""

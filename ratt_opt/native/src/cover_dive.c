@@ -11,7 +11,7 @@
 #include "covers.h"
 #include "sets.h"
 
-enum { PROVED, SPENT, PLAN, FULL }; /* how a run ends, see level_search.py */
+enum { PROVED, SPENT, PLAN, FULL }; /* how a run ends, see levels.py */
 enum { RECENT = 100 };              /* covers by which elements are chosen */
 
 /* What plans have to lack of a sum at least: its weights have errors of 1e-9. */

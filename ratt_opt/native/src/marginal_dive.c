@@ -6,7 +6,7 @@
 #include "sets.h"
 #include "team.h"
 
-enum { PROVED, SPENT, PLAN, FULL }; /* how a run ends, see level_search.py */
+enum { PROVED, SPENT, PLAN, FULL }; /* how a run ends, see levels.py */
 enum { BRANCHED = -1 };             /* in a record: the node is divided by the elements of the next robot */
 
 /* Keep the gains beside a set of seers of a target in row `at`. */

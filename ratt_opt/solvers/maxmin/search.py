@@ -1,9 +1,9 @@
 """Branch and bound over elements and winning groups, by outer approximation of concave relaxations.
 
 At a node, tangent cuts of the groups' values and a linear program bound the relaxed plans that remain
-(``relaxed/``). Outcomes enter when a plan or a relaxed plan is attacked (``plans/``). An attack that leaves several
-groups bounds a plan by the best of them, which is not concave: groups that never win are closed by bounds of
-their own, and if that fails the node branches on which group wins (``groups/``).
+(``relaxation.py``). Outcomes enter when a plan or a relaxed plan is attacked (``adversary.py``). An attack that leaves
+several groups bounds a plan by the best of them, which is not concave: groups that never win are closed by bounds of
+their own, and if that fails the node branches on which group wins (``winners.py``).
 """
 
 from __future__ import annotations
