@@ -191,7 +191,7 @@ class UpperEnds:
     """The smallest of all bounds, with its proof; may be interrupted at any point, as all of them may."""
 
     def __init__(self, known: Known, *, in_depth: bool = True) -> None:
-        self.concave = RestartedSearch(known)
+        self._concave = RestartedSearch(known)
         self._known = known
         self._in_depth = _search_in_depth(known) if in_depth else None
         self._turn = float(TURN)
@@ -208,7 +208,7 @@ class UpperEnds:
     def run(self, turns: Turns, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         if self._in_depth is None:
-            return self.concave.run(turns, progress)
+            return self._concave.run(turns, progress)
         most = 1.0
         while True:
             before = turns.budget.nodes
@@ -223,11 +223,11 @@ class UpperEnds:
             self._turn *= GROWTH
 
     def _ends(self) -> list[RestartedSearch | SearchByLevels]:
-        return [self.concave] if self._in_depth is None else [self.concave, self._in_depth]
+        return [self._concave] if self._in_depth is None else [self._concave, self._in_depth]
 
     def _run_concave(self, turns: Turns, progress: Progress, nodes: int) -> Stop:
         until = turns.budget.nodes + nodes
-        return self.concave.run(TurnsUntil(turns, lambda: turns.budget.nodes >= until), progress)
+        return self._concave.run(TurnsUntil(turns, lambda: turns.budget.nodes >= until), progress)
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:
