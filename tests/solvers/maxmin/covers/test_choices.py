@@ -267,3 +267,23 @@ def test_records_have_the_layout_that_c_expects():
     names = "Choosers", "Attacks", "Path", "Gains"
     made += [ctypes.sizeof(getattr(marginal_tables, f"{name}Record")) for name in names]
     assert sizes.tolist() == made
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_full_pool_has_room_for_partitions_into_more_groups(seed: int, monkeypatch: pytest.MonkeyPatch):
+    """Covers of partitions into one to four groups, in any order, are kept as they were added."""
+    monkeypatch.setattr("ratt_opt.solvers.maxmin.covers.pool.FIRST_ROOM", 2)
+    elements, rng, added = 6, np.random.default_rng(seed), dict[int, tuple[Any, list[Any], float]]()
+    pool = CoverPool(Choices(packed_elements(elements, 2), np.arange(elements), np.zeros(elements, np.bool_), 1))
+    for _ in range(30):
+        partition = int(rng.integers(0, 4))
+        left_out, level = rng.random(elements) < 0.5, float(rng.random())
+        sums = [rng.random((2, 3)) for _ in range(partition + 1)]
+        known, before = pool.add(partition, left_out, sums, level), len(added)
+        if known == before or level < added[known][2]:
+            added[known] = left_out, sums, level
+    assert len(pool) == len(added) > 2
+    for k, (left_out, sums, level) in added.items():
+        np.testing.assert_array_equal(pool.left_out(k), left_out)
+        np.testing.assert_array_equal(pool.sums[k, : len(sums)], sums)
+        assert (pool.partition[k], pool.level[k]) == (len(sums) - 1, level)
