@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq, fmpq_mat, fmpz, fmpz_mat
+from flint import arb, fmpq, fmpq_mat, fmpz_mat
 
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import ProofError
@@ -18,12 +18,9 @@ __all__ = [
     "definite",
     "is_positive",
     "largest",
-    "largest_of_inverse",
     "missing",
-    "output_trace",
     "total",
     "trace",
-    "trace_of_inverse",
 ]
 
 
@@ -42,29 +39,6 @@ def largest(values: list[Any]) -> Any:
 def trace(a: fmpq_mat) -> Any:
     """Sum of the diagonal."""
     return total(a[i, i] for i in range(a.nrows()))
-
-
-def trace_of_inverse(a: fmpq_mat) -> fmpq:
-    """Return the trace of the inverse, rounded up to a multiple of ``2**-ctx.prec``: sums of those stay short."""
-    return _rounded_up(trace(a) / a.det() if a.nrows() == 2 else trace(a.inv()))
-
-
-def output_trace(c: fmpq_mat, a: fmpq_mat) -> fmpq:
-    """Return the trace of ``c a^{-1} c'``, rounded up likewise."""
-    return _rounded_up(trace(c * a.inv() * c.transpose()))
-
-
-def _rounded_up(exact: fmpq) -> fmpq:
-    scale = fmpz(1) << ctx.prec
-    return fmpq((exact * scale).ceil(), scale)
-
-
-def largest_of_inverse(a: fmpq_mat) -> fmpq:
-    """Return an upper bound on the largest eigenvalue of the inverse of a 2 x 2 matrix; its root is off by
-    ``2**-ctx.prec``."""
-    size, minor, scale = trace(a), a.det(), fmpz(1) << ctx.prec
-    root = ((size * size - 4 * minor) * scale * scale).ceil().isqrt() + 1
-    return fmpq(size + fmpq(root, scale)) / (2 * minor)
 
 
 def definite(matrix: fmpq_mat) -> int:

@@ -177,11 +177,11 @@ def exact(where: str, value: Any) -> fmpq:
 def packed(where: str, value: Any, d: int) -> fmpq_mat:
     """Return a symmetric matrix from its lower triangle, row by row."""
     flat = [exact(where, x) for x in array(where, value, d * (d + 1) // 2)]
-    return fmpq_mat(d, d, [flat[k] for k in _places(d)])
+    return fmpq_mat(d, d, [flat[k] for k in places(d)])
 
 
 @cache
-def _places(d: int) -> list[int]:
+def places(d: int) -> list[int]:
     """Where a lower triangle has each entry of the whole matrix."""
     pairs = [(max(i, j), min(i, j)) for i in range(d) for j in range(d)]
     return [i * (i + 1) // 2 + j for i, j in pairs]

@@ -22,7 +22,7 @@ LARGEST_TEAM = 1000
 class Statement:
     """One problem and plan, in exact numbers.
 
-    ``output`` : the part C (q, d) of each target's state that counts, or ``None`` for all of it. ``square`` : C'C.
+    ``output`` : the part C (q, d) of each target's state that counts: the identity if ``is_whole``. ``square`` : C'C.
     ``defect[e][j]`` : what has to be added to the eigenvalues of element ``e``'s information of target ``j`` to make it
     positive semidefinite. ``prior_low``, ``prior_high`` : bounds on ``max_j w_j lambda_max(C prior_j C')``
     (max-eigenvalue).
@@ -34,20 +34,21 @@ class Statement:
     """
 
     def __init__(self, problem: object, plan: object, prior_range: object) -> None:
-        has_output = isinstance(problem, dict) and "output" in problem
-        given = fields("problem", problem, f"{PROBLEM} output" if has_output else PROBLEM)
-        output = given.pop() if has_output else None
-        kind, d, prior, information, weights, owners, pairs, blinded, cut, *safe = given
+        self.is_whole = not (isinstance(problem, dict) and "output" in problem)
+        given = fields("problem", problem, PROBLEM if self.is_whole else f"{PROBLEM} output")
+        kind, d, prior, information, weights, owners, pairs, blinded, cut, robots, safe_links, *output = given
         need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
-        need(not has_output or kind != "logdet", "problem: the log-det has no output")
+        need(self.is_whole or kind != "logdet", "problem: the log-det has no output")
         self.objective, self.d = kind, index("dimension", d, 101)
         self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(array("prior", prior))]
         m = len(self.prior)
         rows = [array(f"information[{e}]", row, m) for e, row in enumerate(array("information", information))]
         self.information = [[packed(f"information[{e}]", x, self.d) for x in row] for e, row in enumerate(rows)]
         self.weights = [exact("weights", w) for w in array("weights", weights, m)]
-        self.output = None if output is None else [rows_of("output", c, self.d) for c in array("output", output, m)]
-        self._read_team(owners, pairs, (blinded, cut), safe)
+        self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
+        stated = [rows_of("output", c, self.d) for part in output for c in array("output", part, m)]
+        self.output = [self.identity] * m if self.is_whole else stated
+        self._read_team(owners, pairs, (blinded, cut), (robots, safe_links))
         self.plan = tuple(index("plan", e, len(self.owner)) for e in array("plan", plan, self.n))
         need(
             self.d and m and self.n and all(self.choices),
@@ -60,7 +61,9 @@ class Statement:
         need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
         self._derive(prior_range)
 
-    def _read_team(self, owners: object, pairs: object, budgets: tuple[object, object], safe: list[object]) -> None:
+    def _read_team(
+        self, owners: object, pairs: object, budgets: tuple[object, object], safe: tuple[object, object]
+    ) -> None:
         self.owner = [index("owners", i, LARGEST_TEAM) for i in array("owners", owners, len(self.information))]
         self.n = n = max(self.owner, default=-1) + 1
         self.choices = tuple(tuple(e for e, i in enumerate(self.owner) if i == k) for k in range(n))
@@ -77,9 +80,8 @@ class Statement:
 
     def _derive(self, prior_range: object) -> None:
         """What the checks need; information must be semidefinite but for rounding."""
-        self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
         self.inverse = [self._inverse(p) for p in self.prior]
-        self.square = [c.transpose() * c for c in self.output] if self.output else [self.identity] * len(self.prior)
+        self.square = [c.transpose() * c for c in self.output]
         parts = zip(self.weights, self.square, self.prior, strict=True)
         self.prior_trace = total(w * trace(square * p) for w, square, p in parts)
         self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
@@ -103,8 +105,7 @@ class Statement:
             array("prior_eigenvalue", given, 0)
             return fmpq(0), fmpq(0)
         low, high = (exact("prior_eigenvalue", x) for x in array("prior_eigenvalue", given, 2))
-        outputs = self.output or [self.identity] * len(self.prior)
-        pairs = [(w, c * p * c.transpose()) for w, c, p in zip(self.weights, outputs, self.prior, strict=True)]
+        pairs = [(w, c * p * c.transpose()) for w, c, p in zip(self.weights, self.output, self.prior, strict=True)]
         need(all(definite(_scaled(high / w, p) - p) >= 0 for w, p in pairs), "prior_eigenvalue: upper too small")
         need(any(definite(_scaled(low / w, p) - p) <= 0 for w, p in pairs), "prior_eigenvalue: lower too large")
         return low, high

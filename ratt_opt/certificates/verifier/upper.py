@@ -252,51 +252,40 @@ class UpperCheck:
     def _fenchel(self, point: object) -> tuple[list[fmpq], Any]:
         """Return ``(W, c)`` with ``phi(S) <= c + sum over e in S of <W, information[e]>`` for every S.
 
-        trace:  tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y), from (L^{-1} - Y) L (L^{-1} - Y) >= 0; W = w Y^2.
+        trace:  tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y), from (L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0; W = w Y Y'.
         logdet: logdet L <= tr(Y L) - logdet Y - d, from log x <= x - 1 for the eigenvalues of Y L; W = w Y.
         maxeig: lambda_max(C L^{-1} C') >= 1/q >= 2t - t^2 q with q = v'Lv / |Cv|^2; W = w t^2 vv' / |Cv|^2 for one
         target. With u = Cv / |Cv| and z = C'u, (z'v)^2 <= (z' L^{-1} z) (v'Lv) (Cauchy), and z'v = |Cv|.
         """
         tick()
-        d, m = self.about.d, len(self.about.prior)
-        if self.about.objective == "maxeig":
+        about, d, m = self.about, self.about.d, len(self.about.prior)
+        if about.objective == "maxeig":
             target, size, vector = array("point", point, 3)
             j, t = index("point target", target, m), exact("point t", size)
             v = fmpq_mat(d, 1, [exact("point v", x) for x in array("point v", vector, d)])
-            seen = (v.transpose() * self.about.square[j] * v)[0, 0]
+            seen = (v.transpose() * about.square[j] * v)[0, 0]
             need(seen > 0, "upper proof: a direction v is zero, or so is its output")
-            weight = v * v.transpose() * (self.about.weights[j] * t * t / seen)
+            weight = v * v.transpose() * (about.weights[j] * t * t / seen)
             blank = [fmpq(0)] * (d * d)
-            constant = self.about.prior_high - 2 * self.about.weights[j] * t + trace(weight * self.about.inverse[j])
+            constant = about.prior_high - 2 * about.weights[j] * t + trace(weight * about.inverse[j])
             return blank * j + weight.entries() + blank * (m - j - 1), constant
-        if self.about.output is not None:
-            return self._output_fenchel(point, self.about.output)
-        row, constant = [], fmpq(0)
-        packs = array("point", point, m)
-        for given, w, prior, inverse in zip(
-            packs, self.about.weights, self.about.prior, self.about.inverse, strict=True
-        ):
-            y = packed("point Y", given, d)
-            weight = y * w if self.about.objective == "logdet" else y * y * w
-            if self.about.objective == "logdet":
+        row, constant = [], about.prior_trace if about.objective == "trace" else fmpq(0)
+        parts = zip(array("point", point, m), about.output, about.weights, about.inverse, strict=True)
+        for given, c, w, inverse in parts:
+            y = self._touched(given, c)
+            if about.objective == "logdet":
                 need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
+                weight = y * w
                 constant -= w * d + w * arb((y * inverse).det()).log()
             else:
-                constant += w * (trace(prior) - 2 * trace(y))
+                weight = y * y.transpose() * w
+                constant -= 2 * w * trace(c * y)
             constant += trace(weight * inverse)
             row += weight.entries()
         return row, constant
 
-    def _output_fenchel(self, point: object, output: list[fmpq_mat]) -> tuple[list[fmpq], Any]:
-        """The same for the trace of ``C L^{-1} C'``, with Y (d, q).
-
-        ``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)``, from ``(L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0``; W = w Y Y'.
-        """
-        row, constant = [], fmpq(0)
-        parts = zip(array("point", point, len(output)), output, self.about.weights, self.about.inverse, strict=True)
-        for given, c, w, inverse in parts:
-            y = rows_of("point Y", array("point Y", given, c.nrows() * c.ncols()), c.nrows())
-            weight = y * y.transpose() * w
-            constant += trace(weight * inverse) - 2 * w * trace(c * y)
-            row += weight.entries()
-        return row, constant + self.about.prior_trace
+    def _touched(self, given: object, c: fmpq_mat) -> fmpq_mat:
+        """Y (d, q) of one target, which is symmetric if the whole state counts."""
+        if self.about.is_whole:
+            return packed("point Y", given, self.about.d)
+        return rows_of("point Y", array("point Y", given, c.nrows() * c.ncols()), c.nrows())

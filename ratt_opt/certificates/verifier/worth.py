@@ -1,34 +1,36 @@
-"""Whether sets of one plan's robots are worth a claim, exactly; all are asked about one claim."""
+"""Whether sets of one plan's robots are worth a claim, exactly; all are asked about one claim.
+
+The matrices of a target are integers over one unit, so that sums of them are exact and quick. Of a matrix L the ends
+of its characteristic polynomial p are enough: ``|p(0)| = det L`` and ``-p'(0) / p(0) = tr(L^{-1})``, as both sides of
+the latter are the sum of ``1 / x`` over the eigenvalues x. The eigenvalues of a 2 x 2 matrix are the roots of p.
+"""
 
 from __future__ import annotations
 
+from functools import cache, reduce
+from math import isqrt, lcm, prod
+from operator import add
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpq, fmpq_mat, fmpz_mat
 
-from ratt_opt.certificates.verifier.exact_matrices import (
-    definite,
-    largest_of_inverse,
-    output_trace,
-    total,
-    trace_of_inverse,
-)
-from ratt_opt.certificates.verifier.fixed_point import FixedPoint
-from ratt_opt.certificates.verifier.reading import need
+from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
+from ratt_opt.certificates.verifier.reading import need, places
 from ratt_opt.certificates.verifier.statement import PRECISIONS
-from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.certificates.verifier.work import hold, tick
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
-    from flint import fmpq, fmpq_mat
-
-    from ratt_opt.certificates.verifier.fixed_point import Sums
     from ratt_opt.certificates.verifier.statement import Statement
 
-    Known = tuple[tuple[int, ...], Sums]
+__all__ = ["Known", "Worth"]
 
-__all__ = ["Worth"]
+AT_ONCE = 32
+"""Targets of one weight below one logarithm."""
+
+Known = list[int]
+"""L of a set of robots that sense for sure, less the plan's defects: each target's lower triangle over its unit."""
 
 
 class Worth:
@@ -41,21 +43,30 @@ class Worth:
     def __init__(self, about: Statement, lower: fmpq) -> None:
         self.about, self.lower = about, lower
         defects = [total(about.defect[e][j] for e in about.plan) for j in range(len(about.prior))]
-        self._start = [a - about.identity * delta for a, delta in zip(about.inverse, defects, strict=True)]
-        self._quick = FixedPoint(about, self._start) if FixedPoint.serves(about) else None
-        self.nobody: Known = (), self._quick.start if self._quick else []
+        start = [a - about.identity * delta for a, delta in zip(about.inverse, defects, strict=True)]
+        rows = [start, *(about.information[e] for e in about.plan)]
+        self._units = [lcm(*(int(m.numer_denom()[1]) for m in column)) for column in zip(*rows, strict=True)]
+        self.nobody, *self._own = map(self._in_units, rows)
+        self._copies, self._scales = cache(self._copies_of), cache(self._scales_at)
+        self._logarithms = cache(self._logarithms_at)
+
+    def _in_units(self, row: list[fmpq_mat]) -> Known:
+        tick()
+        known: Known = []
+        for m, unit in zip(row, self._units, strict=True):
+            numerators, denominator = m.numer_denom()
+            known += [
+                int(numerators[i, j]) * (unit // int(denominator)) for i in range(self.about.d) for j in range(i + 1)
+            ]
+        return _held(known)
 
     def plus(self, known: Known, robot: int) -> Known:
         """The set with one robot more."""
-        inside, sums = known
-        return (*inside, robot), self._quick.plus(sums, robot) if self._quick else sums
+        return list(map(add, known, self._own[robot]))
 
     def of(self, robots: Iterable[int]) -> Known:
         """The set of these robots."""
-        known = self.nobody
-        for i in robots:
-            known = self.plus(known, i)
-        return known
+        return reduce(self.plus, robots, self.nobody)
 
     def require(self, known: Known, others: Iterable[int] = (), count: int = 0) -> None:
         """Check that the set is worth it: alone, or with any ``count`` of the ``others``.
@@ -63,48 +74,94 @@ class Worth:
         With r = count robots T, L(S + T) is the average over T of L(S) + r information[i], and phi is concave in L: it
         is worth the average there at least.
         """
-        inside, sums = known
-        quick = self._quick
-        more = [quick.copies(i, count) for i in others] or [quick.none] if quick else []
-        if quick is None or not quick.are_worth(sums, more, count or 1, self.lower):
-            posterior = self._with(self._start, inside)
-            cases = [self._with(posterior, [i], count) for i in others] or [posterior]
-            worth = any(self._at(precision, cases, count or 1) for precision in PRECISIONS)
-            need(worth, "lower proof: a leaf is worth less than the claim")
+        cases = [list(map(add, known, self._copies(i, count))) for i in others] or [known]
+        worth = any(self._are_worth(precision, cases, count or 1) for precision in PRECISIONS)
+        need(worth, "lower proof: a leaf is worth less than the claim")
 
-    def _with(self, posterior: list[fmpq_mat], robots: Iterable[int], times: int = 1) -> list[fmpq_mat]:
-        for i in robots:
-            own = self.about.information[self.about.plan[i]]
-            posterior = [a + b * times for a, b in zip(posterior, own, strict=True)]
-        return posterior
+    def _copies_of(self, robot: int, times: int) -> Known:
+        return _held([times * x for x in self._own[robot]])
 
-    def _at(self, precision: int, cases: list[list[fmpq_mat]], count: int) -> bool:
-        with ctx.workprec(precision):
-            return self._are_worth(cases, count)
-
-    def _are_worth(self, cases: list[list[fmpq_mat]], count: int) -> bool:
+    def _are_worth(self, precision: int, cases: list[Known], count: int) -> bool:
         """Whether any ``count`` of the cases (all positive definite) are worth it on average."""
-        lower = self.lower
-        if lower <= 0 and all(definite(m - i) >= 0 for x in cases for m, i in zip(x, self.about.inverse, strict=True)):
+        about, lower = self.about, self.lower
+        if lower <= 0 and all(self._is_at_least(about.inverse, x) for x in cases):
             return True  # at least the prior's information is worth at least phi(empty set) = 0
-        if self.about.objective != "maxeig" or (self.about.d == 2 and self.about.output is None):
-            return bool(total(sorted(map(self._value, cases))[:count]) >= lower * count)
+        if about.objective != "maxeig" or (about.d == 2 and about.is_whole):
+            with ctx.workprec(precision):
+                return bool(total(sorted(self._value(x, precision) for x in cases)[:count]) >= lower * count)
         # Each case is worth it if lambda_max(C L^{-1} C') <= room / w for its targets. With L > 0 that is
         # L - (w / room) C'C >= 0: both say that [[L, C'], [C, (room / w) I]] >= 0 (Schur).
-        room = self.about.prior_low - lower
-        parts = (part for x in cases for part in zip(self.about.weights, self.about.square, x, strict=True))
-        return bool(room > 0) and all(definite(m - square * (w / room)) >= 0 for w, square, m in parts)
+        room = about.prior_low - lower
+        if room <= 0:
+            return False
+        needed = [square * (w / room) for w, square in zip(about.weights, about.square, strict=True)]
+        return all(self._is_at_least(needed, x) for x in cases)
 
-    def _value(self, posterior: list[fmpq_mat]) -> Any:
-        """Return a lower bound on the criterion (max-eigenvalue: of two coordinates), sharper at a higher precision."""
+    def _is_at_least(self, needed: list[fmpq_mat], known: Known) -> bool:
+        parts = zip(self._matrices(known), needed, self._units, strict=True)
+        return all(definite(fmpq_mat(m) - least * fmpq(unit)) >= 0 for m, least, unit in parts)
+
+    def _value(self, known: Known, precision: int) -> Any:
+        """A lower bound on the criterion (max-eigenvalue: of two coordinates), sharper at a higher precision."""
         tick()
-        pairs = list(zip(self.about.weights, posterior, strict=True))
-        if self.about.objective == "maxeig":
-            return self.about.prior_low - max(w * largest_of_inverse(m) for w, m in pairs)
-        if self.about.output is not None:
-            traces = zip(self.about.weights, self.about.output, posterior, strict=True)
-            return self.about.prior_trace - total(w * output_trace(c, m) for w, c, m in traces)
-        if self.about.objective == "trace":
-            return self.about.prior_trace - total(w * trace_of_inverse(m) for w, m in pairs)
-        items = zip(self.about.weights, self.about.prior, posterior, strict=True)
-        return total(w * arb((m * p).det()).log() for w, p, m in items).lower()
+        about = self.about
+        if about.objective == "logdet":
+            sizes = [abs(p_0) for p_0, _ in self._ends(known)]
+            logs = ((w, arb(prod(sizes[j] for j in own)).log() - log) for w, own, log in self._logarithms(precision))
+            return total(w * log for w, log in logs).lower()
+        if about.objective == "maxeig":
+            return about.prior_low - fmpq(self._largest_error(known, precision), 1 << precision)
+        return about.prior_trace - fmpq(sum(self._errors(known, precision)), 1 << precision)
+
+    def _errors(self, known: Known, precision: int) -> Iterator[int]:
+        """By target, its weighted trace in units of ``2^-precision``, rounded up."""
+        scales = self._scales(precision)
+        if self.about.is_whole:
+            return (-(scale * p_1 // p_0) for scale, (p_0, p_1) in zip(scales, self._ends(known), strict=True))
+        parts = zip(scales, self.about.square, self._matrices(known), strict=True)
+        return (int((trace(square * m.inv()) * scale).ceil()) for scale, square, m in parts)
+
+    def _largest_error(self, known: Known, precision: int) -> int:
+        """The largest weighted eigenvalue of targets of two coordinates, likewise; none exceeds its trace."""
+        largest, roots = 0, zip(self._scales(precision), self._ends(known), strict=True)
+        for error, (scale, (p_0, p_1)) in zip(self._errors(known, precision), roots, strict=True):
+            if error > largest:
+                root = isqrt((p_1 * p_1 - 4 * p_0) << 2 * precision) + 1
+                largest = max(largest, -(scale * ((p_1 << precision) - root) // (2 * p_0 << precision)))
+        return largest
+
+    def _ends(self, known: Known) -> Iterator[tuple[int, int]]:
+        """``p(0)`` and ``p'(0)`` of each target."""
+        if self.about.d == 2:
+            entries = iter(known)
+            return ((a * c - b * b, -a - c) for a, b, c in zip(entries, entries, entries, strict=True))
+        polynomials = (m.charpoly() for m in self._matrices(known))
+        return ((int(p[0]), int(p[1])) for p in polynomials)
+
+    def _matrices(self, known: Known) -> Iterator[Any]:
+        d, of_whole = self.about.d, places(self.about.d)
+        for k in range(0, len(known), d * (d + 1) // 2):
+            tick()
+            yield fmpz_mat(d, d, [known[k + place] for place in of_whole])
+
+    def _scales_at(self, precision: int) -> list[int]:
+        """By target, its weight over the unit of L, in units of ``2^-precision``, rounded up."""
+        weights = zip(self.about.weights, self._units, strict=True)
+        return [int((w * (unit << precision)).ceil()) for w, unit in weights]
+
+    def _logarithms_at(self, _: int) -> list[tuple[fmpq, list[int], arb]]:
+        """By weight, a few targets that have it, and the logarithm of their determinants without robots."""
+        about, found = self.about, []
+        for weight in dict.fromkeys(about.weights):
+            own = [j for j, w in enumerate(about.weights) if w == weight]
+            for few in (own[k : k + AT_ONCE] for k in range(0, len(own), AT_ONCE)):
+                tick()
+                before = total(arb(self._units[j] ** about.d / about.prior[j].det()).log() for j in few)
+                found.append((weight, few, before))
+        return found
+
+
+def _held(known: Known) -> Known:
+    """The same, counted as held in memory: with what one path of cases adds to it."""
+    hold(fmpq(max(map(abs, known))), 2 * len(known))
+    return known
