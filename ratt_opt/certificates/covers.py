@@ -18,7 +18,6 @@ from ratt_opt.attack.threshold_search import Threshold
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import group_tree, sets_proof
 from ratt_opt.certificates.listed_columns import duals_of_all_groups
-from ratt_opt.certificates.plain_trees import LARGEST_TEAM, PlainTrees
 from ratt_opt.certificates.plan_sets import NotClosedError
 from ratt_opt.certificates.verifier.duals import Listed
 from ratt_opt.certificates.verifier.work import seconds_left, tick
@@ -48,10 +47,7 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     ------
     NotClosedError : no duals were found, a group is left, or a tree is too large.
     """
-    threat, plan = sets.problem.threat, sets.plan
-    if plan is None:
-        return _plain_proof(sets, max_nodes)
-    question = _question(plan, sets)
+    threat, question = sets.problem.threat, _question(sets)
     slack = 2 * threat.alpha_c * UNIT - question.claim(threat.n_blinded)
     question = replace(question, limit=max(slack, -1))
     record: dict[str, Any] = {"sets": sets_proof(sets, question.most + 1, max_nodes)}
@@ -64,27 +60,9 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     return {"conclusion": "cover", **record, "partition": _partition(listed, threat, slack)}
 
 
-def _plain_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
-    """The same for a criterion without compiled loops: without dual prices, all groups are listed."""
-    threat, robots = sets.problem.threat, sets.problem.n_robots
-    if robots > LARGEST_TEAM:
-        raise NotClosedError
-    trees = PlainTrees(sets, max_nodes)
-    question = Question(sets.threshold, robots, np.zeros(robots, dtype=np.int64), 0, 0, unit=1)
-    tree = trees.over_groups()
-    listed = [_listed(threat, question, *group) for group in trees.listed]
-    return {
-        "conclusion": "cover",
-        "sets": {"size": robots + 1, "tree": ["budget"]},
-        "duals": {"link": 1, "robots": [0] * robots, "blinded": 0},
-        "bounds": [],
-        "tree": tree,
-        "partition": _partition(listed, threat, 2 * threat.alpha_c),
-    }
-
-
-def _question(plan: Plan, sets: PlanSets) -> Question:
+def _question(sets: PlanSets) -> Question:
     """Duals that refute the threshold, in units, and the largest size of a set below it."""
+    plan = sets.plan
     most = plan.most_below(sets.threshold)
     duals = duals_of_all_groups(plan, sets.threshold) or _searched_duals(plan, sets)
     robots, blinded = (np.floor(duals[0] * UNIT).astype(np.int64), int(np.ceil(duals[1] * UNIT)))

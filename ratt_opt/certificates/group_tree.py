@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.attack.pricing import GroupSearch, Question
-from ratt_opt.certificates.plain_trees import PlainTrees
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.native.library import address, function
@@ -93,8 +92,6 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
     NotClosedError : a set is worth less, or the tree is too large.
     """
     plan = sets.plan
-    if plan is None:
-        return {"size": size, "tree": PlainTrees(sets, max_nodes).over_sets(size)}
     if size > plan.robots:
         return {"size": size, "tree": ["budget"]}
     trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages)
@@ -121,7 +118,6 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
     NotClosedError : a group is neither, or the tree is too large.
     """
     plan = sets.plan
-    assert plan is not None, "the question is about one"
     averages, links = sets.objective.verifier_averages, len(plan.threat.graph.links)
     flows = min(MOST_FLOWS, FLOW_NUMBERS // max(links, 1))
     trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=MOST_LISTED)

@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.pricing import Plan
+from ratt_opt.attack.team import LARGEST_DIMENSION, Links, Team
 from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.setfunctions.criteria.outputs import StateCriterion
+from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.setfunctions.information import triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -20,6 +24,8 @@ __all__ = ["COVERING", "MOST_CRITERIA", "NotClosedError", "PlanSets"]
 
 MOST_CRITERIA = 60_000_000
 """Most criteria of single targets looked at; the verifier looks at half of them, a microsecond or two each."""
+NEGLIGIBLE = 2.0**-27
+"""Deviation of a coordinate that does not count, beside those that do: less than rounding, as it is squared."""
 COVERING = "covering all attacks"
 """What is told while a cover is built."""
 
@@ -46,9 +52,17 @@ class PlanSets:
         return self.problem.information_objective
 
     @cached_property
-    def plan(self) -> Plan | None:
-        """The plan as the compiled loops read it; ``None`` if they do not have the criterion."""
-        return Plan.of(self.objective, self.elements, self.problem.threat)
+    def plan(self) -> Plan:
+        """The plan as the compiled loops read it.
+
+        Raises
+        ------
+        NotClosedError : they do not have states of so many coordinates.
+        """
+        if self.objective.dimension > LARGEST_DIMENSION:
+            raise NotClosedError
+        threat = self.problem.threat
+        return Plan(_team(self.objective, self.elements), Links.of(threat), threat)
 
     def start(self) -> FloatArray:
         """The posterior information of nobody, (M, d, d)."""
@@ -79,3 +93,23 @@ class PlanSets:
         self.looked_at += sets * self.objective.n_targets
         if self.looked_at > MOST_CRITERIA:
             raise NotClosedError
+
+
+def _team(objective: InformationObjective, elements: IntArray) -> Team:
+    """The plan's robots for compiled loops: these have criteria of whole states, in whatever coordinates."""
+    prior, information = objective.prior_information, objective.information[elements]
+    if isinstance(objective, StateCriterion) and objective.output is not None:
+        basis = _counted_coordinates(objective.prior, objective.output)
+        prior, information = (np.swapaxes(basis, -1, -2) @ part @ basis for part in (prior, information))
+    code = CRITERIA[objective.name].compiled_code
+    assert code is not None, "criteria that have certificates are compiled"
+    return Team(code, objective.dimension, np.array(objective.weights), triangles(prior), triangles(information))
+
+
+def _counted_coordinates(prior: FloatArray, output: FloatArray) -> FloatArray:
+    """(M, d, d) ``B`` with states ``B y``: of y what counts, ``C B y``, is as large as y but for a negligible rest."""
+    _, sizes, axes = np.linalg.svd(output)
+    spread, counted = np.einsum("mia,mab,mib->mi", axes, prior, axes), sizes.shape[1]
+    whole = (sizes**2 * spread[:, :counted]).sum(axis=1, keepdims=True)
+    rest = NEGLIGIBLE * np.sqrt(whole / spread[:, counted:])
+    return np.asarray(np.swapaxes(axes, -1, -2) / np.concatenate([sizes, rest], axis=1)[:, None, :])

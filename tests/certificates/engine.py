@@ -6,12 +6,23 @@ modules; so do, beside an inner part, the tests that compare it with the definit
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import FileFormatError, Problem, ProofError, network_scenario, problem_document, ratt
+from ratt_opt import (
+    FileFormatError,
+    MaxEigenvalueObjective,
+    Problem,
+    ProofError,
+    TraceObjective,
+    network_scenario,
+    problem_document,
+    ratt,
+)
 from ratt_opt.certificates import write
 from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
@@ -22,7 +33,7 @@ from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.work import limited, tick, watched
 from ratt_opt.errors import UndecidedError
 from tests.oracles import brute_force_worst_case
-from tests.strategies import OBJECTIVES, random_problem
+from tests.strategies import OBJECTIVES, information_data, random_problem
 
 CRITERIA = list(OBJECTIVES)
 __all__ = [
@@ -33,6 +44,7 @@ __all__ = [
     "accepted_leaves",
     "check",
     "drawn",
+    "drawn_of_part",
     "limited",
     "lower_proof",
     "network",
@@ -48,13 +60,7 @@ __all__ = [
 ]
 
 
-def plain_proof(sets, max_nodes):
-    """As for a criterion without compiled loops."""
-    sets.__dict__["plan"] = None
-    return cover_proof(sets, max_nodes)
-
-
-PROVERS = {"cover": (cover_proof, 50_000), "plain": (plain_proof, 50_000), "sizes": (group_size_proof, 50_000)}
+PROVERS = {"cover": (cover_proof, 50_000), "sizes": (group_size_proof, 50_000)}
 GRAPH_PROOFS = list(PROVERS)
 
 STEPS = {
@@ -123,10 +129,21 @@ def drawn(seed):
     return problem, plan, brute_force_worst_case(problem, plan)
 
 
-def small_proofs(kind, seeds):
+def drawn_of_part(seed):
+    """The same of criteria of a part of the state, which has one to four coordinates."""
+    rng, (problem, plan, _) = np.random.default_rng([53, seed]), drawn(seed)
+    dimension = int(rng.integers(1, 5))
+    data = information_data(rng, problem.objective.n, int(rng.integers(1, 4)), dimension)
+    output = rng.normal(size=(int(rng.integers(1, dimension + 1)), dimension)) * 10.0 ** rng.integers(-1, 5)
+    kind = TraceObjective if seed % 2 else MaxEigenvalueObjective
+    problem = replace(problem, objective=kind(*data, output=output))
+    return problem, plan, brute_force_worst_case(problem, plan)
+
+
+def small_proofs(kind, seeds, draw=drawn):
     """Problem, plan, worst case, and the proof of a little less, or ``None``."""
     for seed in seeds:
-        problem, plan, worst = drawn(seed)
+        problem, plan, worst = draw(seed)
         if worst > 1e-3:
             yield problem, plan, worst, proof(kind, problem, plan, worst * (1 - 1e-7))
 
