@@ -39,7 +39,8 @@ def verify(
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
     proved; 4: neither proved nor refuted within the limits. None of these if the output cannot be written (74).
     """
-    from ratt_opt.certificates.verifier.verify import verify_certificate
+    from ratt_opt.certificates.verifier.reading import load
+    from ratt_opt.certificates.verifier.verify import verify_document
     from ratt_opt.certificates.verifier.work import watched
 
     checker = None
@@ -55,14 +56,14 @@ def verify(
         given = load_input(problem)
         expected = differences(given, objective)
     with Step("checking the certificate") as step, watched(step.say):
-        found = verify_certificate(file, expected_problem=expected, time_limit=time_limit)
+        document = load(file)
+        found = verify_document(document, expected_problem=expected, time_limit=time_limit)
         second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     story = []
     if explain:
         from ratt_opt.certificates.explanation import explained
-        from ratt_opt.certificates.verifier.reading import load
 
-        story = explained(load(file))
+        story = explained(document)
     if as_json:
         about = {} if given is None else {"given": given.digest}
         checked = {} if second is None else {"verified": asdict(second)}

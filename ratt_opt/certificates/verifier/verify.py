@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flint import arb
 
@@ -24,7 +24,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["verify_certificate"]
+__all__ = ["verify_certificate", "verify_document"]
 
 FIRST = 1
 """The version of the format before this one."""
@@ -48,16 +48,27 @@ def verify_certificate(
     ProofError : the proof has a fault; the text names the first one found.
     UndecidedError : neither, within the time and memory that the verifier gives to one file.
     """
-    if time_limit is not None and (
-        isinstance(time_limit, bool) or not isinstance(time_limit, Real) or not time_limit > 0
-    ):
+    seconds = _checked(time_limit)
+    return verify_document(reading.load(path), expected_problem=expected_problem, time_limit=seconds)
+
+
+def verify_document(
+    document: dict[str, Any], *, expected_problem: object = None, time_limit: float | None = SECONDS
+) -> Verified:
+    """The same of a document that is loaded already; it stays as it is."""
+    with limited(_checked(time_limit)):
+        return _decide(dict(document), expected_problem)
+
+
+def _checked(time_limit: float | None) -> float:
+    if time_limit is None:
+        return math.inf
+    if isinstance(time_limit, bool) or not isinstance(time_limit, Real) or not time_limit > 0:
         raise InputError("time_limit", "must be a positive number of seconds", time_limit)
-    with limited(math.inf if time_limit is None else float(time_limit)):
-        return _decide(path, expected_problem)
+    return float(time_limit)
 
 
-def _decide(path: str | Path, expected_problem: object) -> Verified:
-    document = reading.load(path)
+def _decide(document: dict[str, Any], expected_problem: object) -> Verified:
     made_from = reading.stated_hash("made_from", document.pop("made_from")) if "made_from" in document else None
     names = "format version problem plan claim prior_eigenvalue upper lower"
     _, version, problem, plan, claim, prior_range, upper_part, lower_part = fields("", document, names)
