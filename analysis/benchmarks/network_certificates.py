@@ -21,7 +21,7 @@ from analysis.tables import print_table
 from ratt_opt._rounding import relative_gap
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
-from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.lower import check_lower
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.work import limited
 from ratt_opt.certificates.write import problem_document
@@ -49,10 +49,10 @@ def measured(problem: Problem, seconds: float) -> dict[str, object]:
             threshold, part = weaker_lower_proof(problem, plan, threshold)
     built = time.process_time()
     if part is not ENUMERATED:
-        check = LowerCheck(Statement(problem_document(problem), plan.tolist(), []))
-        check.check(part, fmpq(*(threshold * (1 - CHECKED)).as_integer_ratio()))
+        about = Statement(problem_document(problem), plan.tolist(), [])
+        check_lower(about, part, fmpq(*(threshold * (1 - CHECKED)).as_integer_ratio()))
     row: dict[str, object] = {"alpha_s": problem.alpha_s, "alpha_c": problem.alpha_c}
-    row |= {"gap": relative_gap(found.lower, found.upper), "proof": part["kind"]}
+    row |= {"gap": relative_gap(found.lower, found.upper), "proof": part["conclusion"]}
     row["below"] = 1 - threshold / found.lower if part is not ENUMERATED else 1.0
     row |= {"nodes": len(part.get("tree", ())), "kB": len(json.dumps(part)) / 1000}
     spent = {"attack [s]": attacked - began, "build [s]": built - attacked, "check [s]": time.process_time() - built}

@@ -16,7 +16,7 @@ from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_pr
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.verifier.upper import UpperCheck
+from ratt_opt.certificates.verifier.upper import upper_bounds
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick, watched
 from ratt_opt.errors import InputError, ProofError, UndecidedError
@@ -184,8 +184,7 @@ def write_certificate(
         record, plan = problem_document(problem), problem.check_plan(elements).tolist()
         prior_range = _prior_range(problem, record, plan)
         began = monotonic()
-        check = UpperCheck(Statement(record, plan, prior_range))
-        high = max(float(upper), _proved_upper(check, upper_part), 0.0)
+        high = max(float(upper), _proved_upper(Statement(record, plan, prior_range), upper_part), 0.0)
         reserve = RESERVED * (monotonic() - began) + LEAST_RESERVED
         origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
         is_undecided = False
@@ -247,10 +246,10 @@ def _prior_range(problem: Problem, record: dict[str, Any], plan: list[int]) -> l
     return [middle * (1 - 1e-9), middle * (1 + 1e-9)]
 
 
-def _proved_upper(check: UpperCheck, upper_part: dict[str, Any]) -> float:
+def _proved_upper(about: Statement, upper_part: dict[str, Any]) -> float:
     """Smallest float that the verifier can prove as an upper bound from this proof."""
     with ctx.workprec(256):
-        return max((_round_up(bound) for bound in check.bounds(upper_part)), default=0.0)
+        return max((_round_up(bound) for bound in upper_bounds(about, upper_part)), default=0.0)
 
 
 def _round_up(bound: fmpq | arb) -> float:

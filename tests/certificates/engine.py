@@ -28,7 +28,7 @@ from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
-from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.lower import check_lower
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.work import limited, tick, watched
 from ratt_opt.errors import UndecidedError
@@ -104,7 +104,7 @@ def accepted_leaves(problem, plan, part, value):
 
 def check(about, part, value):
     """The same of a statement."""
-    return LowerCheck(about).check(part, fmpq(*float(value).as_integer_ratio()))
+    return check_lower(about, part, fmpq(*float(value).as_integer_ratio()))
 
 
 def refuse(problem, plan, part, value, text=None):

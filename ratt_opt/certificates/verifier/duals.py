@@ -21,14 +21,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.certificates.verifier.cases import robots_of
-from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed
+from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed, walk
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
-    from ratt_opt.certificates.verifier.cases import Case, Cases
+    from collections.abc import Iterator
 
-__all__ = ["Duals", "Listed", "check_partition"]
+    from ratt_opt.certificates.verifier.cases import Case, Cases, Close
+
+__all__ = ["Duals", "Listed", "check_duals", "check_partition"]
 
 LARGEST = 2**53
 """Of duals and flows, in size."""
@@ -147,26 +149,43 @@ class Duals:
                 raise UndecidedError(f"not decided: more than {MOST_LISTED} groups are listed")
 
 
+def check_duals(cases: Cases, size: int, *given: object) -> int:
+    """Check the proof: its duals, bounds and tree, and the partition if groups are listed; returns its leaves.
+
+    ``size`` : any so many robots are worth the claim
+    """
+    dual_values, bounds, tree, *partition = given
+    duals = Duals(cases, dual_values)
+    duals.read_bounds(bounds)
+    closing: dict[str, Close] = {"flow": duals.close_by_flow}
+    if partition:
+        closing["listed"] = duals.list_group
+    need(bool(partition) == (duals.slack >= 0), "lower proof: whether duals claim more than the budgets is wrong")
+    leaves = cases.check(tree, cases.groups(min(size - 1, cases.about.n)), closing)
+    for groups in partition:
+        check_partition(duals, groups)
+    return leaves
+
+
 def check_partition(duals: Duals, tree: object) -> None:
     """Check that the listed groups do not partition the team within the budgets.
 
     ``tree`` : in preorder the robot whose group is chosen; there is one child for each listed group that has it and
     fits.
     """
-    listed, everyone = duals.listed, duals.cases.everyone
-    having = [[group for group in listed if group.robots >> i & 1] for i in range(duals.about.n)]
-    robots = iter(array("partition", tree))
-    waiting = [(everyone, duals.slack, duals.cases.blinded, 2 * duals.about.alpha_c)]
-    while waiting:
-        left, cost, blinded, links = waiting.pop()
-        need(left, "lower proof: listed groups partition the team within the budgets")
-        robot = next(robots, None)
-        need(robot is not None, "lower proof: the tree of partitions is too short")
-        i = index("partition", robot, duals.about.n)
+    listed, n = duals.listed, duals.about.n
+    having = [[group for group in listed if group.robots >> i & 1] for i in range(n)]
+
+    def expand(robot: object, case: tuple[int, int, int, int]) -> Iterator[tuple[int, int, int, int]]:
+        left, cost, blinded, links = case
+        i = index("partition", robot, n)
         need(left >> i & 1, "lower proof: a robot of the tree of partitions has its group already")
-        for group in reversed(having[i]):
+        for group in having[i]:
             tick()
             fits = group.robots & ~left == 0 and group.cost <= cost and group.need <= blinded
             if fits and group.links <= links:
-                waiting.append((left & ~group.robots, cost - group.cost, blinded - group.need, links - group.links))
-    need(next(robots, None) is None, "lower proof: the tree of partitions is too long")
+                rest = left & ~group.robots
+                need(rest, "lower proof: listed groups partition the team within the budgets")
+                yield rest, cost - group.cost, blinded - group.need, links - group.links
+
+    walk("partition", tree, (duals.cases.everyone, duals.slack, duals.cases.blinded, 2 * duals.about.alpha_c), expand)

@@ -35,8 +35,13 @@ if TYPE_CHECKING:
 
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["UpperCheck"]
+__all__ = ["check_upper", "upper_bounds"]
 
+Left = tuple[tuple[int, ...], ...]
+Winners = dict[int, frozenset[int]]
+
+NODES = "covers", "marginals", "fenchel", "part"
+"""Names of nodes, by a field that no other node has; those without one are branches on elements."""
 BLOCK = 16
 """Points whose scores are computed between two looks at the clock."""
 
@@ -49,179 +54,189 @@ class _Point(NamedTuple):
 
 
 class _Cut(NamedTuple):
-    """``phi(plan restricted to group) <= constant + sum of scores[element] over the robots of the group``."""
+    """``phi(plan restricted to group)`` is at most what the point says of the elements of the group's robots."""
 
     attack: int
     group: frozenset[int]
-    constant: Any
-    scores: list[fmpq]
+    point: _Point
 
 
 class _Cover(NamedTuple):
-    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`UpperCheck._covers`)."""
+    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`_Proof._cover`)."""
 
     left_out: frozenset[int]
     bound: Any
 
 
-class UpperCheck:
-    """Decides the upper proofs of one problem."""
+def check_upper(about: Statement, part: object, upper: fmpq) -> int:
+    """Check that every plan's worst-case value is at most ``upper``; return the number of leaves."""
+    need(upper >= 0, "claim: upper is negative")  # a group of blinded robots only is worth phi(empty set) = 0
+    for precision in PRECISIONS:
+        with ctx.workprec(precision):
+            bounds = upper_bounds(about, part)
+            worst = next((b for b in bounds if not b <= upper), None)
+            if worst is None:
+                return len(bounds)
+    raise ProofError(f"upper proof: a leaf only proves {arb(worst).str(17)}, more than the claim")
 
-    def __init__(self, about: Statement) -> None:
-        self.about = about
 
-    def check(self, part: object, upper: fmpq) -> int:
-        """Check that every plan's worst-case value is at most ``upper``; return the number of leaves."""
-        need(upper >= 0, "claim: upper is negative")  # a group of blinded robots only is worth phi(empty set) = 0
-        for precision in PRECISIONS:
-            with ctx.workprec(precision):
-                bounds = self.bounds(part)
-                worst = next((b for b in bounds if not b <= upper), None)
-                if worst is None:
-                    return len(bounds)
-        raise ProofError(f"upper proof: a leaf only proves {arb(worst).str(17)}, more than the claim")
+def upper_bounds(about: Statement, part: object) -> list[Any]:
+    """Return each leaf's bound; together the leaves cover all plans, or ProofError."""
+    return _Proof(about, part).bounds
 
-    def bounds(self, part: object) -> list[Any]:
-        """Return each leaf's bound; together the leaves cover all plans, or ProofError.
 
-        The plans of a case are a product of element sets, one per robot. Under attack ``a`` the team value is
-        the value of the winning group; a cut of group g may be used where g is the only group or the declared
-        winner. So the worst case is at most any weighted average of usable cuts, and that is at most its
-        constant plus, robot by robot, the largest score among the elements left. Leaves of other kinds:
-        :meth:`_cover_leaf`, ``marginals.py``.
-        """
-        has_covers = isinstance(part, dict) and "covers" in part
-        names = "attacks points cuts tree covers" if has_covers else "attacks points cuts tree"
-        attacks, given, cut_list, tree, *cover_list = fields("upper proof", part, names)
+class _Proof:
+    """A proof as it is read: what its leaves name, and the ``bounds`` of its leaves.
+
+    The plans of a case are a product of element sets, one per robot: those ``left``. Under attack ``a`` the team value
+    is the value of the winning group, which ``winners`` may declare.
+    """
+
+    def __init__(self, about: Statement, part: object) -> None:
+        self.about, self.bounds = about, list[Any]()
+        self._has_covers = isinstance(part, dict) and "covers" in part
+        names = "attacks points cuts tree covers" if self._has_covers else "attacks points cuts tree"
+        attacks, points, cuts, tree, *covers = fields("upper proof", part, names)
         families = array("attacks", attacks)
-        reading.check_size("attacks", len(families) * self.about.n, reading.MOST_CELLS)
-        groups = [self._groups(attack) for attack in families]
-        points = self._points(given)
-        cuts, bounds = self._cuts(groups, points, cut_list), []
-        covers = self._covers(groups, points, cover_list[0]) if has_covers else []
-        marginals = cache(lambda: MarginalBounds(self.about))
-        before: dict[int, list[tuple[int, ...]]] = {}
+        reading.check_size("attacks", len(families) * about.n, reading.MOST_CELLS)
+        self._groups = [self._groups_left(attack) for attack in families]
+        self._points = self._read_points(points)
+        self._cuts = [self._cut(cut) for cut in array("cuts", cuts)]
+        self._covers = [self._cover(cover) for given in covers for cover in array("covers", given)]
+        self._marginals = cache(lambda: MarginalBounds(about))
+        self._named: dict[int, list[tuple[int, ...]]] = {}
+        walk("upper", tree, (about.choices, {}), self._expand)
 
-        def expand(node: Any, case: Any) -> Iterator[Any]:
-            left, winners = case
-            if isinstance(node, dict) and "covers" in node:
-                bounds.append(self._cover_leaf(node, covers, left))
-            elif isinstance(node, dict) and "marginals" in node:
-                a = index("marginal leaf", fields("marginal leaf", node, "marginals")[0], len(groups))
-                bounds.append(marginals().bound(groups[a], left))
-            elif isinstance(node, dict) and "fenchel" in node:
-                bounds.append(self._leaf(node, cuts, groups, left, winners))
-                if isinstance(bounds[-1], fmpq):
-                    hold(bounds[-1])
-            elif isinstance(node, dict) and "part" in node:
-                a = index("part branch", fields("part branch", node, "part")[0], len(groups))
-                need(a not in winners, "upper proof: an attack's best part is declared twice")
-                yield from ((left, {**winners, a: group}) for group in groups[a])
-            else:
-                i, blocks = self._parts(node, before)
-                named = sorted(chain(*blocks))
-                rest = tuple(sorted(set(left[i]) - set(named))) if has_covers else ()
-                exact_cover = all(blocks) and sorted([*named, *rest]) == list(left[i])
-                need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
-                blocks += [rest] if rest else []
-                yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
+    def _expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
+        left, winners = case
+        name = next((name for name in NODES if isinstance(node, dict) and name in node), "element")
+        if name == "part":
+            a = self._number("part branch", *fields("part branch", node, name))
+            need(a not in winners, "upper proof: an attack's best part is declared twice")
+            yield from ((left, {**winners, a: group}) for group in self._groups[a])
+        elif name == "element":
+            i, blocks = self._blocks(node, left)
+            yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
+        else:
+            leaves = {"covers": self._cover_leaf, "marginals": self._marginal_leaf, "fenchel": self._fenchel_leaf}
+            self.bounds.append(leaves[name](node, left, winners))
+            if isinstance(self.bounds[-1], fmpq):
+                hold(self.bounds[-1])
 
-        walk("upper", tree, (self.about.choices, {}), expand)
-        return bounds
-
-    def _parts(self, node: Any, before: dict[int, list[tuple[int, ...]]]) -> tuple[int, list[tuple[int, ...]]]:
-        """The robot of an element branch and the parts that it names, or those that were named for it ``before``."""
-        robot, *given = fields(
-            "element branch", node, "element" if isinstance(node, dict) and "parts" not in node else "element parts"
-        )
+    def _blocks(self, node: Any, left: Left) -> tuple[int, list[tuple[int, ...]]]:
+        """The robot of an element branch and its parts: those named, or named ``before``, and with covers the rest."""
+        has_parts = isinstance(node, dict) and "parts" in node
+        robot, *given = fields("element branch", node, "element parts" if has_parts else "element")
         i = index("element branch robot", robot, self.about.n)
-        if given:
-            before[i] = [indices("element branch", block, len(self.about.owner)) for block in array("parts", given[0])]
-        need(i in before, f"upper proof: no branch before names the parts of robot {i}")
-        return i, list(before[i])
+        for parts in given:
+            self._named[i] = [indices("element branch", part, len(self.about.owner)) for part in array("parts", parts)]
+        need(i in self._named, f"upper proof: no branch before names the parts of robot {i}")
+        blocks = list(self._named[i])
+        named = sorted(chain(*blocks))
+        rest = tuple(sorted(set(left[i]) - set(named))) if self._has_covers else ()
+        exact_cover = all(blocks) and sorted([*named, *rest]) == list(left[i])
+        need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
+        return i, blocks + [rest] * bool(rest)
 
-    def _leaf(self, node: Any, cuts: list[_Cut], groups: list[Any], left: Any, winners: Any) -> Any:
-        chosen, given = fields("leaf", node, "fenchel weights")
-        used = [cuts[index("leaf cut", k, len(cuts))] for k in array("leaf cuts", chosen)]
+    def _weighed(self, node: object, name: str, known: list[Any]) -> list[tuple[fmpq, Any]]:
+        """The weights of a leaf, and what it names of what the proof has."""
+        chosen, given = fields("leaf", node, f"{name} weights")
+        used = [known[index(f"leaf {name}", k, len(known))] for k in array(f"leaf {name}", chosen)]
         weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
-        mass = total(weights)
-        need(mass > 0 and all(w >= 0 for w in weights), "upper proof: a leaf's weights are negative or all zero")
-        wins = all(len(groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for cut in used)
+        return list(zip(weights, used, strict=True))
+
+    def _fenchel_leaf(self, node: object, left: Left, winners: Winners) -> Any:
+        """An average of cuts, each of the only group of an attack or of the declared winner.
+
+        The worst case is at most that of each, so at most the constant of the average plus, robot by robot, the
+        largest score among the elements left.
+        """
+        pairs = self._weighed(node, "fenchel", self._cuts)
+        mass = total(w for w, _ in pairs)
+        need(mass > 0 and all(w >= 0 for w, _ in pairs), "upper proof: a leaf's weights are negative or all zero")
+        wins = all(len(self._groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for _, cut in pairs)
         need(wins, "upper proof: a leaf uses a group that is not known to win")
-        pairs = list(zip(weights, used, strict=True))
-        bound = total(w * cut.constant for w, cut in pairs)
+        bound = total(w * cut.point.constant for w, cut in pairs)
         for i, elements in enumerate(left):
             tick()
-            active = [(w, cut.scores) for w, cut in pairs if i in cut.group]
+            active = [(w, cut.point.scores) for w, cut in pairs if i in cut.group]
             bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
         return bound / mass
 
-    def _groups(self, attack: object) -> list[frozenset[int]]:
-        """Check an attack against the budgets; return the seeing robots of its groups, by lowest robot."""
-        robots, pairs = fields("attack", attack, "robots links")
-        blinded, cut = (
-            frozenset(indices("attack robots", robots, self.about.n)),
-            links("attack links", pairs, self.about.n),
-        )
-        need(
-            len(blinded) <= self.about.alpha_s and len(cut) <= self.about.alpha_c,
-            "upper proof: an attack exceeds its budget",
-        )
-        allowed = cut <= self.about.links - self.about.safe_links and not blinded & self.about.safe_robots
-        need(allowed, "upper proof: an attack hits what does not exist or is protected")
-        groups: list[set[int]] = []
-        tick()
-        for start in range(self.about.n):
-            stack, group = [start], {start}
-            while stack and not any(start in g for g in groups):
-                i = stack.pop()
-                fresh = {j for j in self.about.near[i] - group if (min(i, j), max(i, j)) not in cut}
-                group |= fresh
-                stack.extend(fresh)
-            groups += [group] if not stack else []
-        return sorted((frozenset(g) for group in groups if (g := group - blinded)), key=min) or [frozenset()]
+    def _cover_leaf(self, node: object, left: Left, _: Winners) -> Any:
+        """The largest bound of covers, one of which each plan fails: none counts their weighted sum."""
+        pairs = self._weighed(node, "covers", self._covers)
+        need(pairs and all(w > 0 for w, _ in pairs), "upper proof: a leaf's weights are not positive")
+        needed = min(self.about.alpha_s, self.about.n - len(self.about.safe_robots)) + 1
+        most = fmpq(0)
+        for i, elements in enumerate(left):
+            tick()
+            count = needed if i in self.about.safe_robots else 1
+            most += count * max(total(w for w, cover in pairs if e in cover.left_out) for e in elements)
+        need(most < needed * total(w for w, _ in pairs), "upper proof: a plan of a leaf may meet all its covers")
+        return largest([cover.bound for _, cover in pairs])
 
-    def _covers(self, groups: list[list[frozenset[int]]], points: list[_Point], given: object) -> list[_Cover]:
-        """Check covers: under an attack on links, what the elements beside ``left_out`` are worth in each group.
+    def _marginal_leaf(self, node: object, left: Left, _: Winners) -> Any:
+        (attack,) = fields("marginal leaf", node, "marginals")
+        return self._marginals().bound(self._groups[self._number("marginal leaf", attack)], left)
+
+    def _number(self, where: str, attack: object) -> int:
+        return index(where, attack, len(self._groups))
+
+    def _groups_left(self, attack: object) -> list[frozenset[int]]:
+        """Check an attack against the budgets; return the seeing robots of its groups, by lowest robot."""
+        about = self.about
+        robots, pairs = fields("attack", attack, "robots links")
+        blinded, cut = frozenset(indices("attack robots", robots, about.n)), links("attack links", pairs, about.n)
+        fits = len(blinded) <= about.alpha_s and len(cut) <= about.alpha_c
+        need(fits, "upper proof: an attack exceeds its budget")
+        allowed = cut <= about.links - about.safe_links and not blinded & about.safe_robots
+        need(allowed, "upper proof: an attack hits what does not exist or is protected")
+        tick()
+        groups, others = [], set(range(about.n))
+        while others:
+            front = [min(others)]
+            group = set(front)
+            while front:
+                i = front.pop()
+                fresh = {j for j in about.near[i] - group if (min(i, j), max(i, j)) not in cut}
+                group |= fresh
+                front.extend(fresh)
+            others -= group
+            groups.append(frozenset(group - blinded))
+        return sorted(filter(None, groups), key=min) or [frozenset()]
+
+    def _cut(self, given: object) -> _Cut:
+        a, g, p = array("cut", given, 3)
+        attack = self._number("cut attack", a)
+        groups = self._groups[attack]
+        return _Cut(attack, groups[index("cut group", g, len(groups))], self._point("cut point", p))
+
+    def _point(self, where: str, number: object) -> _Point:
+        return self._points[index(where, number, len(self._points))]
+
+    def _cover(self, given: object) -> _Cover:
+        """Check a cover: under an attack on links, what the elements beside ``left_out`` are worth in each group.
 
         Where the robots with an element in ``left_out`` can be blinded all at once, an attack leaves nothing else.
         So a plan that is worth more has ``alpha_s + 1`` of them, or a protected one, whose elements therefore count
         ``alpha_s + 1`` times.
         """
-        covers = []
-        for item in array("covers", given):
-            a, out, numbers = fields("cover", item, "attack left_out points")
-            family = groups[index("cover attack", a, len(groups))]
-            need(sum(map(len, family)) == self.about.n, "upper proof: the attack of a cover blinds robots")
-            left_out = frozenset(indices("cover left_out", out, len(self.about.owner)))
-            bounds = []
-            for group, p in zip(family, array("cover points", numbers, len(family)), strict=True):
-                scores, constant = points[index("cover point", p, len(points))]
-                bounds.append(constant + total(self._most(i, left_out, scores) for i in group))
-            covers.append(_Cover(left_out, largest(bounds)))
-        return covers
+        attack, out, numbers = fields("cover", given, "attack left_out points")
+        groups = self._groups[self._number("cover attack", attack)]
+        need(sum(map(len, groups)) == self.about.n, "upper proof: the attack of a cover blinds robots")
+        left_out, bounds = frozenset(indices("cover left_out", out, len(self.about.owner))), []
+        for group, p in zip(groups, array("cover points", numbers, len(groups)), strict=True):
+            scores, constant = self._point("cover point", p)
+            bounds.append(constant + total(self._most(i, left_out, scores) for i in group))
+        return _Cover(left_out, largest(bounds))
 
     def _most(self, robot: int, left_out: frozenset[int], scores: list[fmpq]) -> fmpq:
         """The largest score of what is kept of a robot's elements; 0 if it is blinded."""
         tick()
         return max([fmpq(0), *(scores[e] for e in self.about.choices[robot] if e not in left_out)])
 
-    def _cover_leaf(self, node: Any, covers: list[_Cover], left: Any) -> Any:
-        """The largest bound of covers, one of which each plan fails: none counts their weighted sum."""
-        chosen, given = fields("cover leaf", node, "covers weights")
-        used = [covers[index("leaf cover", k, len(covers))] for k in array("leaf covers", chosen)]
-        weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
-        need(used and all(w > 0 for w in weights), "upper proof: a leaf's weights are not positive")
-        needed = min(self.about.alpha_s, self.about.n - len(self.about.safe_robots)) + 1
-        pairs, most = list(zip(weights, used, strict=True)), fmpq(0)
-        for i, elements in enumerate(left):
-            tick()
-            count = needed if i in self.about.safe_robots else 1
-            most += count * max(total(w for w, cover in pairs if e in cover.left_out) for e in elements)
-        need(most < needed * total(weights), "upper proof: a plan of a leaf may meet all its covers")
-        return largest([cover.bound for cover in used])
-
-    def _points(self, points: object) -> list[_Point]:
+    def _read_points(self, points: object) -> list[_Point]:
         """Return for each Fenchel point the score of every element, and the constant of its bound."""
         width = len(self.about.prior) * self.about.d**2
         given = array("points", points)
@@ -238,16 +253,6 @@ class UpperCheck:
                 hold(max(row, key=lambda x: int(x.q)), len(row))
             scores += block
         return [_Point(own, constant) for own, (_, constant) in zip(scores, fenchel, strict=True)]
-
-    def _cuts(self, groups: list[list[frozenset[int]]], points: list[_Point], cut_list: object) -> list[_Cut]:
-        cuts = []
-        for item in array("cuts", cut_list):
-            a, g, p = array("cut", item, 3)
-            family = groups[index("cut attack", a, len(groups))]
-            group = family[index("cut group", g, len(family))]
-            point = points[index("cut point", p, len(points))]
-            cuts.append(_Cut(a, group, point.constant, point.scores))
-        return cuts
 
     def _fenchel(self, point: object) -> tuple[list[fmpq], Any]:
         """Return ``(W, c)`` with ``phi(S) <= c + sum over e in S of <W, information[e]>`` for every S.

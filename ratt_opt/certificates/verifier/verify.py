@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from flint import arb
 
 from ratt_opt.certificates.verifier import reading, version1
-from ratt_opt.certificates.verifier.lower import LowerCheck
+from ratt_opt.certificates.verifier.lower import check_lower
 from ratt_opt.certificates.verifier.reading import exact, fields, need
 from ratt_opt.certificates.verifier.statement import Statement
-from ratt_opt.certificates.verifier.upper import UpperCheck
+from ratt_opt.certificates.verifier.upper import check_upper
 from ratt_opt.certificates.verifier.verified import Verified
 from ratt_opt.certificates.verifier.work import SECONDS, limited
 from ratt_opt.errors import InputError
@@ -78,8 +78,11 @@ def _decide(document: dict[str, Any], expected_problem: object) -> Verified:
     need(lower <= upper, "claim: lower is above upper")
     about = Statement(problem, plan, prior_range)
     is_first = version == FIRST
-    upper_leaves = UpperCheck(about).check(version1.upper_of(upper_part) if is_first else upper_part, upper)
-    lower_leaves = (version1.LowerCheck if is_first else LowerCheck)(about).check(lower_part, lower)
+    upper_leaves = check_upper(about, version1.upper_of(upper_part) if is_first else upper_part, upper)
+    if is_first:
+        lower_leaves = version1.LowerCheck(about).check(lower_part, lower)
+    else:
+        lower_leaves = check_lower(about, lower_part, lower)
     return Verified(
         lower=float(low),
         upper=float(high),

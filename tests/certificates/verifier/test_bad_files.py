@@ -146,7 +146,7 @@ def test_conclusions_of_other_kinds_keep_their_rules(tmp_path, good):
         ({"conclusion": "cover", "partition": [0], "tree": [{"blinded": 1}, "copies"]}, "no robot is missing"),
         (
             {"conclusion": "cover", "partition": [0], "tree": whole([])},
-            "tree of partitions is too short|partition the team",
+            "partition proof: a case has no leaf|partition the team",
         ),
         ({"conclusion": "cover", "partition": [0, 0], "tree": whole([])}, "has its group already|partition the team"),
     ):

@@ -92,7 +92,7 @@ def test_many_lone_robots_are_no_recursion():
     found._listed = {1 << i: duals.Listed(1 << i, 0, 0, 0) for i in range(n)}
     with pytest.raises(ProofError, match="partition the team"):
         duals.check_partition(found, list(range(n)))
-    with pytest.raises(ProofError, match="too short"):
+    with pytest.raises(ProofError, match="a case has no leaf"):
         duals.check_partition(found, list(range(n - 1)))
 
 
