@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.certificates.verifier.sizes import UNIT, LinkCosts
+from ratt_opt.errors import ProofError
 from ratt_opt.graph.link_scores import SHARES, most_scores
 
 if TYPE_CHECKING:
@@ -78,20 +79,19 @@ class ScoreBounds:
         if least <= one.least[size]:
             return None
         diagonal = _rounded(start + top.level).tolist()
-        if not one.are_above(least - 1, diagonal, (0, (1 << len(one.near)) - 1), size):
+        try:
+            one.raise_least(size, least, diagonal)
+        except ProofError:
             return None
-        one.raise_least(size, least, diagonal)
         return {"duals": vector, "robots": size, "least": least, "diagonal": diagonal}
 
 
 class CaseBounds:
-    """Bounds of what groups of a case score, and groups that score enough, of which no case is closed."""
+    """Bounds of what groups of a case score."""
 
     def __init__(self, bounds: ScoreBounds, group: LargestGroup) -> None:
         self._known, self._costs, self._group = bounds.known, bounds.costs, group
         self._size, self._n = group.robots, len(bounds.costs[0].near)
-        self._adjacent = bounds.known.relaxed[0].adjacent
-        self._enough: list[list[int]] = [[] for _ in bounds.costs]
         self._need = [-int(limit) for limit in group.limits]
 
     def start(self) -> FloatArray:
@@ -104,16 +104,12 @@ class CaseBounds:
         case, joining = (inside, (1 << self._n) - 1 & ~(inside | outside)), self._size - inside.bit_count()
         place, multipliers = np.where(others, 0.5, 0.0), start.copy()
         for vector in reversed(range(len(self._costs))):
-            if any(inside & group == inside and not group & outside for group in self._enough[vector]):
-                continue
             diagonal = np.zeros(self._n, dtype=np.int64)
             if 0 < joining < others.sum():
                 fixed, relaxed = self._known.relaxed[vector].around(members, others)
                 below = self._need[vector] / 2 - fixed - SPARE
                 top = relaxed.top(multipliers[vector, others], joining)
                 place[others] = top.place
-                if self._holds_one(vector, members, others, place):
-                    continue
                 if 0.0 <= top.value - below < NEAR:
                     multipliers[vector, others], top = _lowered(relaxed, multipliers[vector, others], joining, below)
                 diagonal[others] = _rounded(multipliers[vector, others] + top.level)
@@ -123,23 +119,6 @@ class CaseBounds:
             if self._costs[vector].are_above(self._group.limits[vector], list(kept), case, joining):
                 return Looked(vector, kept, place, multipliers)
         return Looked(-1, (), place, multipliers)
-
-    def _holds_one(self, vector: int, members: BoolArray, others: BoolArray, place: FloatArray) -> bool:
-        """Whether a group of the case that is found by exchanges, from the fractional one, scores enough; keep it."""
-        price, joining = np.array(self._costs[vector].price), self._size - int(members.sum())
-        group, (open_,) = members.copy(), np.nonzero(others)
-        group[open_[np.argsort(-place[open_], kind="stable")[:joining]]] = True
-        while True:
-            gain = 4 * (self._adjacent @ group) - price
-            if 2 * float((self._adjacent @ group) @ group) - price @ group >= self._need[vector]:
-                self._enough[vector].append(sum(1 << int(i) for i in np.flatnonzero(group)))
-                return True
-            leaving, entering = np.flatnonzero(others & group), np.flatnonzero(others & ~group)
-            better = gain[entering] - gain[leaving][:, None] - 4 * self._adjacent[np.ix_(leaving, entering)]
-            best = int(better.argmax())
-            if better.flat[best] <= 0:
-                return False
-            group[leaving[best // len(entering)]], group[entering[best % len(entering)]] = False, True
 
 
 def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, Top]:

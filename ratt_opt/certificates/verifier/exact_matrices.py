@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING, Any
 from flint import arb, fmpq, fmpq_mat, fmpz_mat
 
 from ratt_opt.certificates.verifier.work import tick
-from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 __all__ = [
-    "defect_of",
     "definite",
     "is_positive",
     "largest",
@@ -42,30 +40,22 @@ def trace(a: fmpq_mat) -> Any:
 
 
 def definite(matrix: fmpq_mat) -> int:
-    """Return 1 for a positive definite, 0 for a singular positive semidefinite matrix, -1 otherwise (LDL')."""
+    """Return 1 for a positive definite, 0 for a singular positive semidefinite matrix, -1 otherwise.
+
+    The eigenvalues of a symmetric matrix are real. None of them is negative if and only if the signs of its
+    characteristic polynomial's coefficients alternate, but for zeros: then it has one sign at all negative numbers.
+    """
     if matrix.nrows() == 2 and matrix[0, 0] > 0 and (minor := matrix.det()) >= 0:
         return 1 if minor > 0 else 0
-    rows, strict = matrix.tolist(), 1
-    for k, first in enumerate(rows):
-        tick()
-        pivot = first[k]
-        if pivot < 0 or (pivot == 0 and any(first[k + 1 :])):
-            return -1
-        strict = strict if pivot else 0
-        for row in rows[k + 1 :] if pivot else ():
-            factor = row[k] / pivot
-            row[k:] = [a - factor * b for a, b in zip(row[k:], first[k:], strict=True)]
-    return strict
+    coefficients = matrix.numer_denom()[0].charpoly().coeffs()
+    if any(c * (-1) ** k < 0 for k, c in enumerate(reversed(coefficients))):
+        return -1
+    return 1 if coefficients[0] else 0
 
 
 def is_positive(matrix: fmpz_mat) -> bool:
-    """Whether a symmetric matrix of integers is positive definite.
-
-    Its eigenvalues are real, and all of them positive if and only if the signs of its characteristic polynomial's
-    coefficients alternate.
-    """
-    signs = [coefficient * (-1) ** k for k, coefficient in enumerate(reversed(matrix.charpoly().coeffs()))]
-    return all(value > 0 for value in signs)
+    """Whether a symmetric matrix of integers is positive definite."""
+    return definite(fmpq_mat(matrix)) > 0
 
 
 def missing(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
@@ -73,6 +63,7 @@ def missing(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
 
     ``None`` where the matrix is further from it than rounding explains.
     """
+    tick()
     if definite(matrix) >= 0:
         return fmpq(0)
     enough = max(abs(x) for x in matrix.entries()) * matrix.nrows()  # by Gershgorin
@@ -80,14 +71,3 @@ def missing(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
         if definite(matrix + identity * (delta := enough / 2**k)) >= 0:
             return delta
     return None
-
-
-def defect_of(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
-    """Return what is :func:`missing`.
-
-    Raises ProofError where the matrix is further from semidefinite than rounding explains.
-    """
-    delta = missing(matrix, identity)
-    if delta is None:
-        raise ProofError("problem: an information matrix is not positive semidefinite")
-    return delta

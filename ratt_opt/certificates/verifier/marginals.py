@@ -14,6 +14,7 @@ Source: Nemhauser, Wolsey and Fisher 1978.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flint import arb, fmpq
@@ -38,12 +39,11 @@ class _Told(NamedTuple):
 
 
 class _Beside(NamedTuple):
-    """Of one target and some elements: ``L``, its ``logdet``, what it is worth, and what others gain beside them."""
+    """Of one target and what is told of it: ``L``, its ``logdet``, and what it is worth."""
 
     matrix: fmpq_mat
-    logdet: Any
+    logdet: arb
     value: Any
-    gains: dict[int, Any]
 
 
 class MarginalBounds:
@@ -51,11 +51,10 @@ class MarginalBounds:
 
     def __init__(self, about: Statement) -> None:
         need(about.objective == "logdet", "upper proof: gains diminish with the log-det alone")
-        self._about = about
-        self._told: dict[tuple[int, tuple[fmpq, ...]], _Told] = {}
-        self._elements = [self._raised(e, about.defect[e]) for e in range(len(about.owner))]
-        self._strongest: dict[tuple[int, ...], _Told | None] = {}
-        self._beside: list[dict[tuple[int, ...], _Beside]] = [{} for _ in about.prior]
+        self._about, self._told = about, list[_Told]()
+        self._raised, self._strongest = cache(self._raised_of), cache(self._strongest_of)
+        self._beside, self._gain = cache(self._beside_of), cache(self._gain_of)
+        self._elements = [self._raised(e, tuple(about.defect[e])) for e in range(len(about.owner))]
 
     def bound(self, groups: list[frozenset[int]], left: tuple[tuple[int, ...], ...]) -> Any:
         """No group is worth more, whatever each robot chooses of the elements that are ``left`` to it."""
@@ -63,22 +62,21 @@ class MarginalBounds:
 
     def _group_bound(self, group: frozenset[int], left: tuple[tuple[int, ...], ...]) -> Any:
         tick()
-        chosen = {i: self._strongest_of(left[i]) for i in sorted(group)}
+        chosen = {i: self._strongest(left[i]) for i in sorted(group)}
         fixed = [told for told in chosen.values() if told is not None]
-        beside = [self._known(j, fixed) for j in range(len(self._about.prior))]
-        bound = sum((known.value for known in beside), arb(0))
+        beside = [tuple(told.number for told in fixed if j in told.matrices) for j in range(len(self._about.prior))]
+        bound = sum((self._beside(j, numbers).value for j, numbers in enumerate(beside)), arb(0))
         for i, told in chosen.items():
             if told is None:
-                bound += largest([self._gain(self._elements[e], beside) for e in left[i]])
+                bound += largest([self._added(self._elements[e], beside) for e in left[i]])
         return bound
+
+    def _added(self, told: _Told, beside: list[tuple[int, ...]]) -> Any:
+        """What an element adds at most."""
+        return sum((self._gain(j, beside[j], told.number) for j in told.matrices), arb(0))
 
     def _strongest_of(self, elements: tuple[int, ...]) -> _Told | None:
         """What stands for all of some elements: the one that tells most, if no other tells more of any target."""
-        if elements not in self._strongest:
-            self._strongest[elements] = self._found_strongest(elements)
-        return self._strongest[elements]
-
-    def _found_strongest(self, elements: tuple[int, ...]) -> _Told | None:
         information = self._about.information
         best = max(elements, key=lambda e: total(trace(x) for x in information[e]))
         lacking = list(self._about.defect[best])
@@ -89,37 +87,24 @@ class MarginalBounds:
                 if more is None:
                     return None
                 lacking[j] = max(lacking[j], more)
-        return self._raised(best, lacking)
+        return self._raised(best, tuple(lacking))
 
-    def _raised(self, element: int, more: list[fmpq]) -> _Told:
-        """An element's information with so much more in every direction of each target, stated once."""
-        key = element, tuple(more)
-        if key not in self._told:
-            pairs = enumerate(zip(self._about.information[element], more, strict=True))
-            raised = {j: x + self._about.identity * delta for j, (x, delta) in pairs}
-            telling = {j: x for j, x in raised.items() if any(x.entries())}
-            self._told[key] = _Told(len(self._told), telling)
-        return self._told[key]
+    def _raised_of(self, element: int, more: tuple[fmpq, ...]) -> _Told:
+        """An element's information with so much more in every direction of each target."""
+        pairs = enumerate(zip(self._about.information[element], more, strict=True))
+        raised = {j: x + self._about.identity * delta for j, (x, delta) in pairs}
+        self._told.append(_Told(len(self._told), {j: x for j, x in raised.items() if any(x.entries())}))
+        return self._told[-1]
 
-    def _known(self, target: int, fixed: list[_Told]) -> _Beside:
-        """A target beside the elements of ``fixed`` that tell something about it."""
-        telling = [told for told in fixed if target in told.matrices]
-        kept, key = self._beside[target], tuple(told.number for told in telling)
-        if key not in kept:
-            matrix = sum((told.matrices[target] for told in telling), self._about.inverse[target])
-            logdet = arb(matrix.det()).log()
-            before = kept[()].logdet if telling and () in kept else arb(self._about.inverse[target].det()).log()
-            hold(matrix[0, 0], matrix.nrows() ** 2)
-            kept[key] = _Beside(matrix, logdet, self._about.weights[target] * (logdet - before), {})
-        return kept[key]
+    def _beside_of(self, target: int, numbers: tuple[int, ...]) -> _Beside:
+        matrix = sum((self._told[k].matrices[target] for k in numbers), self._about.inverse[target])
+        hold(matrix[0, 0], matrix.nrows() ** 2)
+        logdet = arb(matrix.det()).log()
+        before = self._beside(target, ()).logdet if numbers else logdet
+        return _Beside(matrix, logdet, self._about.weights[target] * (logdet - before))
 
-    def _gain(self, told: _Told, beside: list[_Beside]) -> Any:
-        """What an element adds at most."""
-        gain = arb(0)
-        for j, matrix in told.matrices.items():
-            known = beside[j]
-            if told.number not in known.gains:
-                more = arb((known.matrix + matrix).det()).log() - known.logdet
-                known.gains[told.number] = self._about.weights[j] * more
-            gain += known.gains[told.number]
-        return gain
+    def _gain_of(self, target: int, numbers: tuple[int, ...], number: int) -> Any:
+        """What is told adds to the value of one target, beside what else is told of it."""
+        known = self._beside(target, numbers)
+        after = arb((known.matrix + self._told[number].matrices[target]).det()).log()
+        return self._about.weights[target] * (after - known.logdet)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from flint import fmpq, fmpq_mat
 
-from ratt_opt.certificates.verifier.exact_matrices import defect_of, definite, total, trace
+from ratt_opt.certificates.verifier.exact_matrices import definite, missing, total, trace
 from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, rows_of
 from ratt_opt.certificates.verifier.work import hold, refuse_wide, tick
 
@@ -84,7 +84,9 @@ class Statement:
         self.square = [c.transpose() * c for c in self.output]
         parts = zip(self.weights, self.square, self.prior, strict=True)
         self.prior_trace = total(w * trace(square * p) for w, square, p in parts)
-        self.defect = [[defect_of(x, self.identity) for x in row] for row in self.information]
+        self.defect = [[missing(x, self.identity) for x in row] for row in self.information]
+        semidefinite = all(delta is not None for row in self.defect for delta in row)
+        need(semidefinite, "problem: an information matrix is not positive semidefinite")
         self.prior_low, self.prior_high = self._check_prior_range(prior_range)
         # Stored information is positive semidefinite up to rounding: with its defect added, it is. So L(S) is
         # positive definite for all plans; n more defects leave room for the lower proof.
