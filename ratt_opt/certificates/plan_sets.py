@@ -1,4 +1,4 @@
-"""Whether sets of a plan's robots are worth a threshold, in floating point: what the builders of lower proofs ask."""
+"""What lower proofs are about: a plan and a threshold, with the plan's robots as compiled loops read them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from ratt_opt.attack.pricing import Plan
 from ratt_opt.attack.team import LARGEST_DIMENSION, Links, Team
-from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.setfunctions.information import triangles
@@ -20,10 +19,8 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["COVERING", "MOST_CRITERIA", "NotClosedError", "PlanSets"]
+__all__ = ["COVERING", "NotClosedError", "PlanSets"]
 
-MOST_CRITERIA = 60_000_000
-"""Most criteria of single targets looked at; the verifier looks at half of them, a microsecond or two each."""
 NEGLIGIBLE = 2.0**-27
 """Deviation of a coordinate that does not count, beside those that do: less than rounding, as it is squared."""
 COVERING = "covering all attacks"
@@ -34,17 +31,13 @@ class NotClosedError(Exception):
     """The proof is too large, or one of its cases is worth less than the threshold."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class PlanSets:
-    """The plan's robots, and whether a set of them is worth the threshold.
-
-    ``looked_at`` : criteria of single targets so far
-    """
+    """The plan's robots, of which sets are to be worth the threshold."""
 
     problem: Problem
     elements: IntArray
     threshold: float
-    looked_at: int = 0
 
     @property
     def objective(self) -> InformationObjective:
@@ -63,36 +56,6 @@ class PlanSets:
             raise NotClosedError
         threat = self.problem.threat
         return Plan(_team(self.objective, self.elements), Links.of(threat), threat)
-
-    def start(self) -> FloatArray:
-        """The posterior information of nobody, (M, d, d)."""
-        return self.objective.prior_information
-
-    def extend(self, posterior: FloatArray, robot: int) -> FloatArray:
-        """That of a set with one robot more."""
-        return np.asarray(posterior + self.objective.information[self.elements[robot]])
-
-    def enough(self, posterior: FloatArray) -> bool:
-        """Whether a set with this posterior is worth the threshold."""
-        self._count(1)
-        return float(self.objective.value(posterior)) >= self.threshold
-
-    def values(self, posteriors: FloatArray) -> FloatArray:
-        """(K,) values of sets with these posteriors."""
-        self._count(len(posteriors))
-        return np.asarray(self.objective.value(posteriors))
-
-    def average_enough(self, values: FloatArray, missing: int) -> bool:
-        """Whether any ``missing`` of these values are: on average, or each where the verifier cannot take averages."""
-        values = np.sort(values)
-        worth = values[:missing].mean() if self.objective.verifier_averages else values[0]
-        return bool(worth >= self.threshold)
-
-    def _count(self, sets: int) -> None:
-        tick()
-        self.looked_at += sets * self.objective.n_targets
-        if self.looked_at > MOST_CRITERIA:
-            raise NotClosedError
 
 
 def _team(objective: InformationObjective, elements: IntArray) -> Team:

@@ -61,14 +61,15 @@ class _Tree:
     """The weakest robot first sees in the group, or does not; when all are known that see, who else is inside."""
 
     def __init__(self, sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> None:
-        self.sets, self.group, self.found = sets, group, found
-        self.bounds, self.own = CaseBounds(bounds, group), sets.objective.information[sets.elements]
+        self.group, self.found, self.bounds = group, found, CaseBounds(bounds, group)
+        self.objective, self.threshold = sets.objective, sets.threshold
+        self.own = self.objective.information[sets.elements]
         self.everyone = (1 << len(self.own)) - 1
         self.safe = sum(1 << i for i in sets.problem.threat.protected_robots)
         self.tree: list[Any] = []
 
     def run(self) -> list[Any]:
-        stack = [_Case(self.sets.start(), self.bounds.start())]
+        stack = [_Case(self.objective.prior_information, self.bounds.start())]
         while stack:
             tick()
             tell(COVERING, len(self.tree))
@@ -83,12 +84,12 @@ class _Tree:
         if self._is_impossible(case, missing, may_see):
             self.tree.append("budget")
             return
-        if case.grown and self.sets.enough(case.posterior):
+        if case.grown and self.objective.value(case.posterior) >= self.threshold:
             self.tree.append("worth")
             return
         waiting = np.array(robots_of(may_see if missing else 0), dtype=np.int64)
-        values = self.sets.values(case.posterior + missing * self.own[waiting])
-        if missing and self.sets.average_enough(values, missing):
+        values = np.asarray(self.objective.value(case.posterior + missing * self.own[waiting]))
+        if missing and self._average(values, missing) >= self.threshold:
             self.tree.append("copies")
             return
         looked = self.bounds.look(case.inside, case.outside, case.start)
@@ -101,6 +102,11 @@ class _Tree:
         else:
             self._ask_place(case, looked.place, stack)
 
+    def _average(self, values: FloatArray, missing: int) -> float:
+        """Of the ``missing`` least values: the least of all if the verifier cannot take averages."""
+        values = np.sort(values)
+        return float(values[:missing].mean() if self.objective.verifier_averages else values[0])
+
     def _is_impossible(self, case: _Case, missing: int, may_see: int) -> bool:
         """What the verifier asks of a leaf that is beyond the budgets."""
         blinded, size = case.inside & case.others, self.group.sensing + self.group.blinded
@@ -112,9 +118,8 @@ class _Tree:
         self.tree.append({"sense": i})
         gone = 1 << i & self.safe  # as it cannot be blinded
         stack.append(replace(case, others=case.others | 1 << i, outside=case.outside | gone))
-        joined, posterior = 1 << i, self.sets.extend(case.posterior, i)
-        case = replace(case, seeing=case.seeing | joined, inside=case.inside | joined)
-        stack.append(replace(case, posterior=posterior, grown=True))
+        case = replace(case, seeing=case.seeing | 1 << i, inside=case.inside | 1 << i)
+        stack.append(replace(case, posterior=case.posterior + self.own[i], grown=True))
 
     def _ask_place(self, case: _Case, place: FloatArray, stack: list[_Case]) -> None:
         """Of the robot that is least clearly inside or outside the best fractional group."""
