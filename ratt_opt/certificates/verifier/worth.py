@@ -150,7 +150,7 @@ class Worth:
         return [int((w * (unit << precision)).ceil()) for w, unit in weights]
 
     def _logarithms_at(self, _: int) -> list[tuple[fmpq, list[int], arb]]:
-        """By weight, a few targets that have it, and the logarithm of their determinants without robots."""
+        """By weight, a few targets that have it, and a ball around the logarithm of what they are without robots."""
         about, found = self.about, []
         for weight in dict.fromkeys(about.weights):
             own = [j for j, w in enumerate(about.weights) if w == weight]
