@@ -45,6 +45,7 @@ def definite(matrix: fmpq_mat) -> int:
     The eigenvalues of a symmetric matrix are real. None of them is negative if and only if the signs of its
     characteristic polynomial's coefficients alternate, but for zeros: then it has one sign at all negative numbers.
     """
+    tick()
     if matrix.nrows() == 2 and matrix[0, 0] > 0 and (minor := matrix.det()) >= 0:
         return 1 if minor > 0 else 0
     coefficients = matrix.numer_denom()[0].charpoly().coeffs()
@@ -63,7 +64,6 @@ def missing(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
 
     ``None`` where the matrix is further from it than rounding explains.
     """
-    tick()
     if definite(matrix) >= 0:
         return fmpq(0)
     enough = max(abs(x) for x in matrix.entries()) * matrix.nrows()  # by Gershgorin

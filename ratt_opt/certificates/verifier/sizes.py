@@ -52,7 +52,11 @@ def check_sizes(cases: Cases, size: int, *given: object) -> int:
     about = cases.about
     if about.n > MOST_ROBOTS:
         raise UndecidedError(f"not decided: sizes of groups are for at most {MOST_ROBOTS} robots")
-    costs = [LinkCosts.read(cases, own) for own in array("duals", duals)]
+    costs: list[LinkCosts] = []
+    for own in array("duals", duals):
+        link, robots = fields("duals", own, "link robots")
+        price = index("duals link", link, LARGEST)
+        costs.append(LinkCosts(cases.near, about.alpha_c, price, _integers("duals robots", robots, about.n)))
     need(costs, "lower proof: there are no duals")
     for form in array("forms", forms):
         number, robots, least, diagonal = fields("form", form, "duals robots least diagonal")
@@ -99,13 +103,6 @@ class LinkCosts:
         cheap, links = sorted(self.price), sum(degrees) // 2
         saved = [2 * link * min(s * (s - 1) // 2, links) for s in range(n + 1)]
         self.least = [self._left(sum(cheap[:s]) - saved[s]) for s in range(n + 1)]
-
-    @classmethod
-    def read(cls, cases: Cases, given: object) -> LinkCosts:
-        """From a certificate."""
-        link, duals = fields("duals", given, "link robots")
-        own = _integers("duals robots", duals, cases.about.n)
-        return cls(cases.near, cases.about.alpha_c, index("duals link", link, LARGEST), own)
 
     def _left(self, cost: int) -> float:
         return cost if cost <= self.most else inf
