@@ -80,6 +80,19 @@ def test_many_leaves_end_at_the_limit(tmp_path: Path) -> None:
     assert _verify(document, tmp_path / "c.json", 0.2) < 5
 
 
+@pytest.mark.parametrize(("d", "exponent"), [(12, 1500), (30, 40)])
+def test_wide_matrices_of_many_targets_end_at_the_limit(d: int, exponent: int, tmp_path: Path) -> None:
+    """Each takes a part of a second to invert, to test, or to value."""
+    document, targets = _document(d, exponent, [LEAF], upper=1e300), 40
+    problem = document["problem"]
+    problem |= {"prior": problem["prior"] * targets, "weights": [1.0] * targets}
+    problem["information"] = [row * targets for row in problem["information"]]
+    document["upper"]["points"][0] *= targets
+    document["claim"]["lower"] = 1e-30
+    document["lower"] = {"conclusion": "forced", "sets": {"size": 1, "tree": ["worth"]}}
+    assert _verify(document, tmp_path / "c.json", 0.5) < 5
+
+
 def test_memory_is_a_limit_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(work, "MOST_BITS", 1000)
     _verify(_document(4, 200, [LEAF]), tmp_path / "c.json", 60.0)
