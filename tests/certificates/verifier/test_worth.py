@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import Problem, ProofError, TraceObjective, random_scenario
+from ratt_opt import MaxEigenvalueObjective, Problem, ProofError, TraceObjective, random_scenario
 from ratt_opt.certificates.verifier.worth import Worth
 from tests.certificates.engine import statement
 from tests.strategies import OBJECTIVES, information_data
@@ -64,3 +64,16 @@ def test_values_are_exact():
     assert is_worth(about, 0.75, [0, 1, 2])
     assert is_worth(about, 0.0, [])
     assert not is_worth(about, np.nextafter(0.75, 1.0), [0, 1, 2])
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_what_rounding_left_below_zero_is_taken_off(dimension):
+    """A robot that is not known to sense may do so; of the worst axis it tells a little less than nothing."""
+    ones = np.ones(dimension - 1)
+    information = np.array([np.diag([0.5, *ones]), np.diag([-5e-10, *ones])])[:, None]
+    objective = MaxEigenvalueObjective(np.eye(dimension)[None], information)
+    about = statement(Problem(objective, range(2), None, 0, 0), range(2))
+    known, both = objective([0]), objective([0, 1])
+    assert both < known - 1e-10
+    assert not is_worth(about, (known + both) / 2, [0])
+    assert is_worth(about, both - 4 * (known - both), [0])
