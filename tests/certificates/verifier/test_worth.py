@@ -75,5 +75,6 @@ def test_what_rounding_left_below_zero_is_taken_off(dimension):
     about = statement(Problem(objective, range(2), None, 0, 0), range(2))
     known, both = objective([0]), objective([0, 1])
     assert both < known - 1e-10
+    assert not is_worth(about, 0.0, [])
     assert not is_worth(about, (known + both) / 2, [0])
     assert is_worth(about, both - 4 * (known - both), [0])
