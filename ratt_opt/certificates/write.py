@@ -253,7 +253,7 @@ def _proved_upper(about: Statement, upper_part: dict[str, Any]) -> float:
 
 
 def _round_up(bound: fmpq | arb) -> float:
-    value = float(arb(bound).mid())
+    value = float(arb(bound).upper())
     while not bound <= fmpq(*value.as_integer_ratio()):
         value = math.nextafter(value, math.inf)
     return value

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import arb
 
 import ratt_opt
 from ratt_opt import (
@@ -25,6 +26,7 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
+from ratt_opt.certificates import write
 from ratt_opt.certificates.verifier.lower import is_forced
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
@@ -244,3 +246,11 @@ def test_where_time_ends_the_upper_end_is_proved_alone(kind, tmp_path, monkeypat
     assert not verified.lower_proved
     assert verified.upper >= exhaustive_optimum(problem).lower * (1 - 1e-9)
     assert verified.upper == pytest.approx(result.upper, rel=1e-9)
+
+
+@pytest.mark.parametrize("ball", [arb(0), arb(0, 1e-70), arb(1, 1e-300), arb(-1, 1e-30)])
+def test_a_bound_is_rounded_up_by_a_few_steps(ball):
+    """From the middle of a ball around 0 there would be no end of them."""
+    found = write._round_up(ball)
+    assert ball <= arb(found)
+    assert found - float(ball.upper()) <= 2 * math.ulp(found)
