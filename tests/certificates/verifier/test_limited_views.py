@@ -1,13 +1,38 @@
-"""Upper ends by covers and by gains, of robots that see few targets: each fault has its name."""
+"""Upper ends by covers and by gains, of robots that see few targets: what gains claim, and each fault by its name."""
 
 from __future__ import annotations
 
 import copy
 import json
+from itertools import product
 
+import numpy as np
 import pytest
+from flint import ctx
 
 from ratt_opt import FileFormatError, ProofError, certify, limited_view_scenario, solve_maxmin, verify_certificate
+from ratt_opt.certificates.verifier.marginals import MarginalBounds
+from tests.certificates.engine import statement
+from tests.strategies import sparse_problem
+
+
+def test_gains_bound_every_plan():
+    """No plan of what is left to robots has a group that is worth more; of one plan the bound is its value."""
+    tight = 0
+    for seed in range(60):
+        rng = np.random.default_rng([62, seed])
+        problem = sparse_problem(rng, "logdet")
+        about = statement(problem, [own[0] for own in problem.choices])
+        left = tuple(own[: int(rng.integers(1, len(own) + 1))] for own in about.choices)
+        groups = [frozenset(np.flatnonzero(row).tolist()) for row in rng.random((2, about.n)) < 0.7]
+        plans = [[plan[i] for i in group] for plan in product(*left) for group in groups]
+        best = max(problem.objective(chosen) for chosen in plans)
+        with ctx.workprec(128):
+            bound = float(MarginalBounds(about).bound(groups, left).upper())
+        assert bound >= best - 1e-12
+        tight += bound <= best + 1e-9
+        assert bound <= best + 1e-9 or any(len(own) > 1 for own in left)
+    assert 15 <= tight < 60
 
 
 @pytest.fixture(scope="module")
