@@ -42,7 +42,7 @@ LOWERED = 0.003
 """By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
 FIRST_ATTEMPT, LONGER = 10_000, 3
-"""Nodes of the first search for a column, and their growth while it does not end."""
+"""Nodes of the first search for a column, and their growth from search to search."""
 
 ROUNDED = 2
 """Units of duals by which rounding may leave the cost of a group below zero."""
@@ -105,12 +105,12 @@ class ThresholdDecision:
             is_enough = found.links > links
             prices = found.scaled(links) if is_enough else found
             answer = self._answered(prices, (threshold, size, -TOLERANCE if is_enough else -LOWERED), budget)
-            if answer is None:
-                self._attempt *= LONGER
-            elif answer.verdict is Threshold.REFUTED and not is_enough:
-                return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
-            elif answer.verdict is not Threshold.REACHED:
+            self._attempt *= LONGER
+            if answer is None or answer.verdict is Threshold.REACHED:
+                continue
+            if answer.verdict is Threshold.OPEN or is_enough:
                 return answer
+            return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
         return Answer(verdict=Threshold.OPEN)
 
     def _answered(self, prices: DualPrices, asked: tuple[float, int, float], budget: Budget) -> Answer | None:

@@ -64,9 +64,8 @@ def _team(objective: InformationObjective, elements: IntArray) -> Team:
     if isinstance(objective, StateCriterion) and objective.output is not None:
         basis = _counted_coordinates(objective.prior, objective.output)
         prior, information = (np.swapaxes(basis, -1, -2) @ part @ basis for part in (prior, information))
-    code = CRITERIA[objective.name].compiled_code
-    assert code is not None, "criteria that have certificates are compiled"
-    return Team(code, objective.dimension, np.array(objective.weights), triangles(prior), triangles(information))
+        objective = CRITERIA[objective.name](objective.prior, objective.information[elements], objective.weights)
+    return Team(objective, triangles(prior), triangles(information))
 
 
 def _counted_coordinates(prior: FloatArray, output: FloatArray) -> FloatArray:
