@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.annealing import Partition
-from ratt_opt.attack.columns import UNIT, Column, Columns
+from ratt_opt.attack.columns import UNIT, Column, Columns, Duals
 from ratt_opt.attack.least_sets.most_below import MostBelow
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.threshold_search import Answer, Threshold
@@ -108,20 +108,13 @@ class ListedColumns:
         OutOfBudget : the budget is spent; it goes on where it ended.
         """
         n_blinded, most_cut = self._threat.n_blinded, 2 * self._threat.alpha_c
-        if not self._is_begun:
-            self._most_below.limit_strongest(budget)
-            self._is_begun = True
         while True:
             if self._covers is None:
-                budget.spend()
-                self._restrict()
-                bound = best_duals(self._columns, n_blinded, most_cut, budget, self._still_possible())
-                self._entered, gap = bound.columns, most_cut * UNIT - bound.duals.claim(n_blinded)
+                duals = self.duals(most_cut, budget)
+                gap = most_cut * UNIT - duals.claim(n_blinded)
                 if gap < 0:
                     return Answer(verdict=Threshold.REFUTED)
-                if self._has_limited(bound.used, budget):
-                    continue
-                within = self._columns.within(bound.duals, gap, MOST_WITHIN)
+                within = self._columns.within(duals, gap, MOST_WITHIN)
                 if within is None:
                     return Answer(verdict=Threshold.OPEN)
                 few, costs = within
@@ -133,6 +126,27 @@ class ListedColumns:
                 return Answer(verdict=Threshold.REFUTED)
             if not self._has_limited(chosen, budget):
                 return Answer(verdict=Threshold.REACHED, partition=self._partition(chosen))
+
+    def duals(self, enough: int, budget: Budget) -> Duals:
+        """Duals under which no column below the threshold has a negative reduced cost.
+
+        They claim more than ``enough`` links, counted from both sides, or what they claim is the most: limits say how
+        many robots are to blind in all columns of the linear program's solution.
+
+        Raises
+        ------
+        OutOfBudget : the budget is spent; it goes on where it ended.
+        """
+        if not self._is_begun:
+            self._most_below.limit_strongest(budget)
+            self._is_begun = True
+        while True:
+            budget.spend()
+            self._restrict()
+            bound = best_duals(self._columns, self._threat.n_blinded, enough, budget, self._still_possible())
+            self._entered = bound.columns
+            if bound.duals.claim(self._threat.n_blinded) > enough * UNIT or not self._has_limited(bound.used, budget):
+                return bound.duals
 
     def _restrict(self) -> None:
         """Tell the columns the limits that they do not have."""
