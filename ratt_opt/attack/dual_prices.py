@@ -69,7 +69,7 @@ class ThresholdDecision:
         self._plan, self._links, self.threat = plan, plan.links, plan.threat
         self.prices = GroupPrices(plan.threat)
         self._begun: tuple[Question, GroupSearch] | None = None
-        """A question that was asked in vain, and its search, which goes on if it is asked again."""
+        """The last question, and its search, if that did not end."""
         self._random = c_uint64(1)
         self._attempt = FIRST_ATTEMPT
         for i in range(plan.robots):
@@ -104,38 +104,35 @@ class ThresholdDecision:
             found = self._settled(threshold, size, budget)
             is_enough = found.links > links
             prices = found.scaled(links) if is_enough else found
-            answer = self._answered(prices, (threshold, size, -TOLERANCE if is_enough else -LOWERED), budget)
+            question = question_of(prices, threshold, size, -TOLERANCE if is_enough else -LOWERED)
+            verdict = self._priced(prices, question, budget)
             self._attempt *= LONGER
-            if answer is None or answer.verdict is Threshold.REACHED:
-                continue
-            if answer.verdict is Threshold.OPEN or is_enough:
-                return answer
-            return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
+            if verdict is Threshold.REFUTED and not is_enough:
+                return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
+            if verdict is Threshold.REFUTED and self._is_too_much(prices, question):
+                return Answer(verdict=Threshold.REFUTED, prices=prices)
+            if verdict in {Threshold.REFUTED, Threshold.OPEN}:
+                break
         return Answer(verdict=Threshold.OPEN)
 
-    def _answered(self, prices: DualPrices, asked: tuple[float, int, float], budget: Budget) -> Answer | None:
-        """Whether no group pays (REFUTED), some new one does (REACHED) or an old one (OPEN); ``None`` : unknown."""
-        threshold, size, limit = asked
-        if self.prices.add(self._cheap(prices, threshold, size, budget)):
-            return Answer(verdict=Threshold.REACHED)
-        question = question_of(prices, threshold, size, limit)
-        columns, is_complete = self._columns(question, budget)
-        if columns:
-            below = float(np.nextafter(threshold, -np.inf))
-            found = [KnownGroup(robots=one.robots, need=one.found, value=below) for one in columns]
-            return Answer(verdict=Threshold.REACHED if self.prices.add(found) else Threshold.OPEN)
-        if not is_complete or (prices.links > self.threat.alpha_c and not self._is_too_much(prices, question)):
-            return None
-        return Answer(verdict=Threshold.REFUTED, prices=prices)
+    def _priced(self, prices: DualPrices, question: Question, budget: Budget) -> Threshold | None:
+        """Whether no group costs less than asked (REFUTED), some new one does (REACHED), or only known ones (OPEN).
 
-    def _columns(self, question: Question, budget: Budget) -> tuple[list[Column], bool]:
-        """Some groups of a question, and whether there are no others; if it was asked in vain before, it goes on."""
+        ``None`` : the search did not end; if the same is asked next, it goes on.
+        """
+        if self.prices.add(self._cheap(prices, question.threshold, question.most, budget)):
+            return Threshold.REACHED
         begun, self._begun = self._begun, None
         search = begun[1] if begun is not None and begun[0].is_same(question) else GroupSearch(self._plan, question)
         columns, is_complete = search.columns(self._attempt, NEW_GROUPS, budget)
-        if not columns:
-            self._begun = question, search
-        return columns, is_complete
+        below = float(np.nextafter(question.threshold, -np.inf))
+        if columns:
+            found = [KnownGroup(robots=one.robots, need=one.found, value=below) for one in columns]
+            return Threshold.REACHED if self.prices.add(found) else Threshold.OPEN
+        if is_complete:
+            return Threshold.REFUTED
+        self._begun = question, search
+        return None
 
     def _is_too_much(self, prices: DualPrices, question: Question) -> bool:
         """Whether prices that no group pays claim more links than the budget, as integers."""
