@@ -109,7 +109,7 @@ class ThresholdDecision:
             self._attempt *= LONGER
             if verdict is Threshold.REFUTED and not is_enough:
                 return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
-            if verdict is Threshold.REFUTED and self._is_too_much(prices, question):
+            if verdict is Threshold.REFUTED and self._is_too_much(question):
                 return Answer(verdict=Threshold.REFUTED, prices=prices)
             if verdict in {Threshold.REFUTED, Threshold.OPEN}:
                 break
@@ -134,10 +134,9 @@ class ThresholdDecision:
         self._begun = question, search
         return None
 
-    def _is_too_much(self, prices: DualPrices, question: Question) -> bool:
-        """Whether prices that no group pays claim more links than the budget, as integers."""
-        lowered = question_of(prices, question.threshold, question.most, 0.0)
-        claim = lowered.claim(self.threat.n_blinded) + min(question.limit, 0) * self._plan.robots
+    def _is_too_much(self, question: Question) -> bool:
+        """Whether duals at which no group costs less than asked claim more links than the budget, as integers."""
+        claim = question.claim(self.threat.n_blinded) + min(question.limit, 0) * self._plan.robots
         return claim > 2 * self.threat.alpha_c * UNIT
 
     def _settled(self, threshold: float, size: int, budget: Budget) -> DualPrices:

@@ -27,6 +27,8 @@ from ratt_opt.highs import LinearProgram, rows_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from numpy.typing import ArrayLike
+
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.attack.columns import Column, Columns
     from ratt_opt.budget import Budget
@@ -64,9 +66,8 @@ def best_duals(
     ------
     OutOfBudget : the time is up, or the user interrupted.
     """
-    n, largest = columns.robots, 4.0 * (most_cut + columns.robots**2)
-    lower = np.append(np.full(n, -largest), 0.0)
-    program = LinearProgram(np.append(np.ones(n), -float(n_blinded)), lower, largest, maximise=True)
+    n = columns.robots
+    program = _program(n, n_blinded, 4.0 * (most_cut + n**2))
     best, known, parts = Duals(np.zeros(n, np.int64), 0), dict.fromkeys(first), np.zeros(0)
     program.add_rows(_rows(list(known), n))
     while best.claim(n_blinded) <= most_cut * UNIT:
@@ -96,11 +97,20 @@ def _rounded(claimed: FloatArray, n: int) -> Duals | None:
 
 
 def _rows(columns: Sequence[Column], robots: int) -> Rows:
-    entries = []
-    for column in columns:
-        members = robots_of(column.group)
-        entries.append(([*members, robots], [*[1.0] * len(members), -float(column.blinded)]))
-    return rows_of(entries, -inf, np.array([column.cut for column in columns], dtype=np.float64))
+    groups = [(robots_of(column.group), column.blinded) for column in columns]
+    return _no_negative_costs(groups, [column.cut for column in columns], robots)
+
+
+def _program(robots: int, n_blinded: int, largest: float) -> LinearProgram:
+    """The dual without a column: prices of robots, of either sign, and of a blinded one, up to ``largest`` in size."""
+    lower = np.append(np.full(robots, -largest), 0.0)
+    return LinearProgram(np.append(np.ones(robots), -float(n_blinded)), lower, largest, maximise=True)
+
+
+def _no_negative_costs(groups: Iterable[tuple[list[int], int]], cuts: ArrayLike, robots: int) -> Rows:
+    """That no group has a negative reduced cost; ``groups`` : robots of each and how many are blinded in it."""
+    entries = [([*members, robots], [*[1.0] * len(members), -float(need)]) for members, need in groups]
+    return rows_of(entries, -inf, cuts)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,7 +156,8 @@ class GroupPrices:
         After that many seconds, prices of nothing.
         """
         if self._program is None or threshold != self._threshold:
-            self._threshold, self._program = threshold, self._begun()
+            most = 2.0 * len(self._threat.graph.links) + 2.0
+            self._threshold, self._program = threshold, _program(self._robots, self._threat.n_blinded, most)
             self._enter(self._program, self._groups.values())
         claim, n = self._program.solve(seconds).x, self._robots
         if len(claim) != n + 1:
@@ -160,20 +171,12 @@ class GroupPrices:
         """(C,) half the links that separate the robots of each row of ``groups`` (C, N) from the others."""
         return np.asarray(0.5 * ((groups @ self._adjacent) * ~groups).sum(axis=1))
 
-    def _begun(self) -> LinearProgram:
-        most = np.full(self._robots, 2.0 * len(self._threat.graph.links) + 2.0)
-        cost = np.append(np.ones(self._robots), -float(self._threat.n_blinded))
-        return LinearProgram(cost, np.append(-most, 0.0), np.append(most, most[:1]), maximise=True)
-
     def _enter(self, program: LinearProgram, groups: Iterable[KnownGroup]) -> None:
         below = [group for group in groups if group.value < self._threshold]
         if below:
-            entries = []
-            for group in below:
-                members = np.flatnonzero(group.robots).tolist()
-                entries.append(([*members, self._robots], [*[1.0] * len(members), -float(group.need)]))
             cuts = self.half_cuts(np.array([group.robots for group in below]))
-            program.add_rows(rows_of(entries, -inf, cuts))
+            needs = [(np.flatnonzero(group.robots).tolist(), group.need) for group in below]
+            program.add_rows(_no_negative_costs(needs, cuts, self._robots))
 
     def _forget(self, robot: FloatArray, blinded: float) -> None:
         """Keep the groups whose reduced cost is among the least, and start afresh next time."""
