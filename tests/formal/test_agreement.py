@@ -11,23 +11,8 @@ import numpy as np
 import pytest
 
 from tests.certificates.cases import certified
-from tests.formal.verified import KINDS, bases, decisions, disagreements, mutants, python_decision
+from tests.formal.verified import KINDS, bases, decisions, python_decision, sweep
 from tests.strategies import random_problem
-
-
-def sweep(folder, seeds, share):
-    """Disagreements, mutants, and mutants that were accepted."""
-    seen = 0
-
-    def documents():
-        nonlocal seen
-        for rng, document in bases(folder, seeds):
-            for at, value, new, mutant in mutants(rng, document, share):
-                seen += 1
-                yield (at, value, new), mutant
-
-    found, accepted = disagreements(folder, documents())
-    return found, seen, accepted
 
 
 def test_certificates_are_accepted_by_both(tmp_path):
@@ -60,7 +45,7 @@ def test_a_raised_claim_is_refused(tmp_path):
 
 
 def test_mutations_are_decided_alike(tmp_path):
-    found, seen, accepted = sweep(tmp_path, range(4), 0.12)
+    found, seen, accepted = sweep(tmp_path, bases(tmp_path, range(4)), 0.12)
     assert not found
     assert seen >= 200
     assert accepted >= 20  # mutations that leave the claim proved, such as a larger upper end
@@ -68,6 +53,6 @@ def test_mutations_are_decided_alike(tmp_path):
 
 @pytest.mark.slow
 def test_ten_thousand_mutations_are_decided_alike(tmp_path):
-    found, seen, _ = sweep(tmp_path, range(12, 60), 0.25)
+    found, seen, _ = sweep(tmp_path, bases(tmp_path, range(12, 60)), 0.25)
     assert not found
     assert seen >= 10_000

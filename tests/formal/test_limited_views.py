@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError, certify, limited_view_scenario, solve_maxmin
-from tests.certificates.mutants import changed, places, variants
-from tests.formal.verified import bases, decisions, disagreements, python_decision
+from tests.certificates.mutants import changed
+from tests.formal.verified import bases, decisions, disagreements, python_decision, sweep
 from tests.solvers.maxmin.engine import COVERS_ALONE, MARGINALS_ALONE
 from tests.strategies import sparse_problem
 from tests.ways import go
@@ -44,23 +44,6 @@ def sparse_documents(leaves, folder, seeds):
         document = proved_by(leaves, sparse_problem(rng, kinds[seed % len(kinds)]), folder / "base.json")
         if document is not None:
             yield rng, document
-
-
-def sweep(leaves, folder, seeds, share):
-    """Disagreements, mutants, and mutants that were accepted."""
-    seen = 0
-
-    def documents():
-        nonlocal seen
-        for rng, document in sparse_documents(leaves, folder, seeds):
-            for at, value in list(places({name: document[name] for name in MUTATED})):
-                for new in variants(value, rng):
-                    if new != value and rng.random() <= share:
-                        seen += 1
-                        yield (at, value, new), changed(document, at, new)
-
-    found, accepted = disagreements(folder, documents())
-    return found, seen, accepted
 
 
 LIMITED_VIEWS = [("trace", 6, range(6)), ("logdet", 6, range(6)), ("trace", 10, range(1)), ("logdet", 10, range(1, 2))]
@@ -126,7 +109,7 @@ def test_forged_gains_are_refused_by_both(tmp_path):
 @pytest.mark.parametrize("leaves", WAYS)
 def test_mutations_are_decided_alike(leaves, monkeypatch, tmp_path):
     go(monkeypatch, WAYS[leaves][0])
-    found, seen, accepted = sweep(leaves, tmp_path, range(16), 0.05)
+    found, seen, accepted = sweep(tmp_path, sparse_documents(leaves, tmp_path, range(16)), 0.05, MUTATED)
     assert not found
     assert seen >= 200
     assert accepted >= 20
@@ -136,7 +119,7 @@ def test_mutations_are_decided_alike(leaves, monkeypatch, tmp_path):
 @pytest.mark.parametrize("leaves", WAYS)
 def test_five_thousand_mutations_are_decided_alike(leaves, monkeypatch, tmp_path):
     go(monkeypatch, WAYS[leaves][0])
-    found, seen, _ = sweep(leaves, tmp_path, range(100, 170), 0.25)
+    found, seen, _ = sweep(tmp_path, sparse_documents(leaves, tmp_path, range(100, 170)), 0.25, MUTATED)
     assert not found
     assert seen >= 5_000
 

@@ -57,12 +57,28 @@ def bases(folder, seeds):
             yield rng, document
 
 
-def mutants(rng, document, share):
-    """One field of any part changed."""
-    for at, value in list(places({name: document[name] for name in document if name != "format"})):
+def mutants(rng, document, share, parts=None):
+    """One field of any part changed, or of some ``parts``."""
+    names = [name for name in document if name != "format"] if parts is None else parts
+    for at, value in list(places({name: document[name] for name in names})):
         for new in variants(value, rng):
             if new != value and rng.random() <= share:
                 yield at, value, new, changed(document, at, new)
+
+
+def sweep(folder, documents, share, parts=None):
+    """Disagreements, mutants, and mutants that were accepted; ``documents`` : with a generator each."""
+    seen = 0
+
+    def changes():
+        nonlocal seen
+        for rng, document in documents:
+            for at, value, new, mutant in mutants(rng, document, share, parts):
+                seen += 1
+                yield (at, value, new), mutant
+
+    found, accepted = disagreements(folder, changes())
+    return found, seen, accepted
 
 
 def disagreements(folder, documents):
