@@ -42,7 +42,7 @@ LOWERED = 0.003
 """By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
 FIRST_ATTEMPT, LONGER = 10_000, 3
-"""Nodes of the first search for a column, and their growth from search to search."""
+"""Nodes of the first search for a column of a threshold, and their growth from search to search."""
 
 ROUNDED = 2
 """Units of duals by which rounding may leave the cost of a group below zero."""
@@ -71,7 +71,6 @@ class ThresholdDecision:
         self._begun: tuple[Question, GroupSearch] | None = None
         """The last question, and its search, if that did not end."""
         self._random = c_uint64(1)
-        self._attempt = FIRST_ATTEMPT
         for i in range(plan.robots):
             alone = np.arange(plan.robots) == i
             self.prices.add([KnownGroup(robots=alone, need=0, value=float(plan.team.single[i]))])
@@ -99,14 +98,14 @@ class ThresholdDecision:
         """
         budget.check()
         size, spent, links = self._plan.most_below(threshold), budget.nodes, self.threat.alpha_c + MARGIN
-        self._attempt = max(self._attempt // LONGER, FIRST_ATTEMPT)
-        while budget.nodes - spent < nodes:
+        attempt = FIRST_ATTEMPT
+        while (left := nodes - (budget.nodes - spent)) > 0:
             found = self._settled(threshold, size, budget)
             is_enough = found.links > links
             prices = found.scaled(links) if is_enough else found
             question = question_of(prices, threshold, size, -TOLERANCE if is_enough else -LOWERED)
-            verdict = self._priced(prices, question, budget)
-            self._attempt *= LONGER
+            verdict = self._priced(question, min(attempt, left), budget)
+            attempt *= LONGER
             if verdict is Threshold.REFUTED and not is_enough:
                 return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
             if verdict is Threshold.REFUTED and self._is_too_much(question):
@@ -115,16 +114,14 @@ class ThresholdDecision:
                 break
         return Answer(verdict=Threshold.OPEN)
 
-    def _priced(self, prices: DualPrices, question: Question, budget: Budget) -> Threshold | None:
+    def _priced(self, question: Question, nodes: int, budget: Budget) -> Threshold | None:
         """Whether no group costs less than asked (REFUTED), some new one does (REACHED), or only known ones (OPEN).
 
-        ``None`` : the search did not end; if the same is asked next, it goes on.
+        ``None`` : the search did not end after that many nodes; if the same is asked next, it goes on.
         """
-        if self.prices.add(self._cheap(prices, question.threshold, question.most, budget)):
-            return Threshold.REACHED
         begun, self._begun = self._begun, None
         search = begun[1] if begun is not None and begun[0].is_same(question) else GroupSearch(self._plan, question)
-        columns, is_complete = search.columns(self._attempt, NEW_GROUPS, budget)
+        columns, is_complete = search.columns(nodes, NEW_GROUPS, budget)
         below = float(np.nextafter(question.threshold, -np.inf))
         if columns:
             found = [KnownGroup(robots=one.robots, need=one.found, value=below) for one in columns]

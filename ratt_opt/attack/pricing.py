@@ -234,14 +234,14 @@ class GroupSearch:
         self.close()
 
     def columns(self, nodes: int, room: int, budget: Budget) -> tuple[list[Column], bool]:
-        """The next groups, at most ``room``, until ``nodes`` nodes in all; and whether there are no others.
+        """The next groups, at most ``room``, within ``nodes`` nodes; and whether there are no others.
 
         Raises
         ------
         OutOfBudget : the time is up.
         """
         table, is_complete = (np.zeros((room, self._plan.robots), np.int8), np.zeros((room, 4), np.int64)), False
-        stop, chunk, count = self.nodes + budget.nodes_left(max(nodes - self.nodes, 0)), FIRST_CHUNK, 0
+        stop, chunk, count = self.nodes + budget.nodes_left(nodes), FIRST_CHUNK, 0
         while self.nodes < stop and count < room and not is_complete:
             budget.check()
             before, began = self.nodes, monotonic()

@@ -39,7 +39,7 @@ def groups_of(search, nodes=10**9, room=200):
     """Every group; nodes, and groups, at a time."""
     is_over = False
     while not is_over:
-        columns, is_over = search.columns(search.nodes + nodes, room, Budget())
+        columns, is_over = search.columns(nodes, room, Budget())
         yield from columns
 
 
