@@ -252,6 +252,7 @@ let rec case_node dear next depth =
       | "inside" -> halves (fun (a, b) -> Inside (k, a, b))
       | "sensing" -> halves (fun (a, b) -> Sensing (k, a, b))
       | "blinded" -> halves (fun (a, b) -> Blinding (k, a, b))
+      | "limit" -> Limited (k, case_node dear next (depth + 1))
       | _ -> none ())
   | _ -> raise (Fault "lower proof: a node must be a name, or a record of one")
 
@@ -300,8 +301,17 @@ let flow_bound net value =
         carried = Array.to_list (Array.map Array.to_list rows) }
   | _ -> assert false
 
-let group_tree net duals bounds tree =
-  { dual = prices duals; bounds = List.map (flow_bound net) (array "bounds" bounds); groups = case_tree "flow" tree }
+let limit net value =
+  match fields "limit" [ "robots"; "size"; "tree" ] value with
+  | [ robots; size; tree ] ->
+      let members = indices "limit robots" robots and n = int_of_nat net.top_robot + 1 in
+      if List.exists (fun i -> i >= n) members then format "limit robots" "names no robot";
+      { limited = List.init n (fun i -> List.mem i members); limit_lemma = sets (Record [ ("size", size); ("tree", tree) ]) }
+  | _ -> assert false
+
+let group_tree net limits duals bounds tree =
+  { dual = prices duals; bounds = List.map (flow_bound net) (array "bounds" bounds);
+    limits = List.map (limit net) limits; groups = case_tree "flow" tree }
 
 (* Integers below 2^31 in size, as many as there are robots. *)
 let small_integers where net value =
@@ -330,19 +340,22 @@ let size_proof net duals forms bounds trees =
     diagonals = List.map bound (array "bounds" bounds); group_trees = List.map (case_tree "form") (array "trees" trees) }
 
 let second_lower net value =
-  let conclusion = match value with Record pairs -> List.assoc_opt "conclusion" pairs | _ -> None in
+  let pairs = match value with Record pairs -> pairs | _ -> [] in
+  let conclusion = List.assoc_opt "conclusion" pairs in
   let given names = fields "lower proof" ("conclusion" :: names) value in
+  let limited = if List.mem_assoc "limits" pairs then [ "limits" ] else [] in
+  let known = List.concat_map (array "limits") in
   match conclusion with
   | Some (String "enumerated") -> ignore (given []); NoLower
   | Some (String "forced") -> (match given [ "sets" ] with [ _; l ] -> ForcedSets (sets l) | _ -> assert false)
   | Some (String "duals") -> (
-      match given [ "sets"; "duals"; "bounds"; "tree" ] with
-      | [ _; l; duals; bounds; tree ] -> Duals (sets l, group_tree net duals bounds tree)
+      match given ([ "sets"; "duals"; "bounds"; "tree" ] @ limited) with
+      | _ :: l :: duals :: bounds :: tree :: limits -> Duals (sets l, group_tree net (known limits) duals bounds tree)
       | _ -> assert false)
   | Some (String "cover") -> (
-      match given [ "sets"; "duals"; "bounds"; "tree"; "partition" ] with
-      | [ _; l; duals; bounds; tree; partition ] ->
-          Cover (sets l, group_tree net duals bounds tree, List.map (nat "partition") (array "partition" partition))
+      match given ([ "sets"; "duals"; "bounds"; "tree"; "partition" ] @ limited) with
+      | _ :: l :: duals :: bounds :: tree :: partition :: limits ->
+          Cover (sets l, group_tree net (known limits) duals bounds tree, List.map (nat "partition") (array "partition" partition))
       | _ -> assert false)
   | Some (String "sizes") -> (
       match given [ "sets"; "duals"; "forms"; "bounds"; "trees" ] with

@@ -22,13 +22,14 @@ Definition only_sense : option_set := Options true false false.
 Definition only_out : option_set := Options false false true.
 
 (** Branches: a robot senses or not; is inside or not; at least [k] robots sense, or fewer; fewer than [b] robots are
-    blinded, or at least [b]. Leaves: those known to sense are worth the claim; any open robots that are missing with
+    blinded, or at least [b]. What a limit says of the case goes on in one child. Leaves: those known to sense are worth the claim; any open robots that are missing with
     those known are; no group of the case exists; all cost too much; the case is one group, which is listed. *)
 Inductive case_tree :=
 | Sense of nat & case_tree & case_tree
 | Inside of nat & case_tree & case_tree
 | Sensing of nat & case_tree & case_tree
 | Blinding of nat & case_tree & case_tree
+| Limited of nat & case_tree
 | IsWorth
 | CopiesWorth
 | NoBudget
@@ -43,7 +44,8 @@ Record case (S : Type) := Case {
 
 Section Checker.
 Variables (S : Type) (add : S -> nat -> S) (worth : S -> bool) (average_worth : S -> seq nat -> nat -> bool).
-Variables (G : Type) (budget : case S -> bool) (dear : nat -> case S -> bool) (note : case S -> option (option G)).
+Variables (G : Type) (narrow : nat -> case S -> option (case S)).
+Variables (budget : case S -> bool) (dear : nat -> case S -> bool) (note : case S -> option (option G)).
 
 Definition options_of (c : case S) (i : nat) : option_set := nth nothing (options c) i.
 Definition put (c : case S) (i : nat) (o : option_set) : case S :=
@@ -90,6 +92,7 @@ Fixpoint check_cases (t : case_tree) (c : case S) (found : seq G) {struct t} : o
         both t1 (with_blinded c (low c) (Z.min (high c) (Z.pred (Z.of_nat b))))
              t2 (with_blinded c (Z.max (low c) (Z.of_nat b)) (high c))
       else None
+  | Limited k t1 => if narrow k c is Some c1 then check_cases t1 c1 found else None
   | IsWorth => if worth (known c) then Some found else None
   | CopiesWorth => if copies_worth c then Some found else None
   | NoBudget => if budget c then Some found else None
@@ -230,6 +233,27 @@ Proof. by rewrite count_options; apply: leq_sum => i _; case: (P _); case: (_ \i
 Lemma inside_open_le : (sees_of open_inside <= sees_of open)%N.
 Proof. by apply: leq_sum => i _; rewrite /open_inside; case: (open _); case: (inside _); case: (_ \in _). Qed.
 
+(** What is known of the sensing robots with a property [R], about all. *)
+Lemma count_robots (Q : pred nat) : count Q (iota 0 (robots w)) = (\sum_(i : robot) Q i)%N.
+Proof.
+have -> : iota 0 (robots w) = index_iota 0 (robots w) by rewrite /index_iota subn0.
+by rewrite -sum1_count big_mkcond big_mkord; apply: eq_bigr => i _; case: (Q i).
+Qed.
+
+Lemma limited_sensing (R : pred nat) : (sensing_size <=
+  #|[set i in C :\: B | R i]| + count (fun i => ~~ R i && may_sense (options_of c i)) (iota 0 (robots w)))%N.
+Proof.
+rewrite count_robots /sensing_size !sum_mem -big_split /=; apply: leq_sum => i _; have := stands_may st i.
+by rewrite /may_be !inE; case: (options_of c i) => [] [] [] []; case: (i \in C); case: (i \in B); case: (R i).
+Qed.
+
+Lemma limited_blinded (R : pred nat) : (count (fun i => R i && inside (options_of c i)) (iota 0 (robots w)) <=
+  #|[set i in C :\: B | R i]| + blinded_size)%N.
+Proof.
+rewrite count_robots /blinded_size !sum_mem -big_split /=; apply: leq_sum => i _; have := stands_may st i.
+by rewrite /may_be /inside !inE; case: (options_of c i) => [] [] [] []; case: (i \in C); case: (i \in B); case: (R i).
+Qed.
+
 Lemma fewest_blindedP : Z.le (fewest_blinded c) (Z.of_nat blinded_size).
 Proof.
 have := inside_sensing; have := inside_open_le; have := open_sensing; have := sees_of_le open_inside.
@@ -366,17 +390,20 @@ Qed.
 End Values.
 
 (** ** The tree *)
-Variables (G : eqType) (budget : case S -> bool) (dear : nat -> case S -> bool) (note : case S -> option (option G)).
+Variables (G : eqType) (narrow : nat -> case S -> option (case S)).
+Variables (budget : case S -> bool) (dear : nat -> case S -> bool) (note : case S -> option (option G)).
 Variables (is_dear : Prop) (fits : G -> Prop).
-Local Notation check := (check_cases add worth average_worth budget dear note).
-Hypotheses (budgetP : forall c, stands c -> ~~ budget c)
+Local Notation check := (check_cases add worth average_worth narrow budget dear note).
+Hypotheses (narrowP : forall k c c', stands c -> narrow k c = Some c' -> stands c')
+  (budgetP : forall c, stands c -> ~~ budget c)
   (dearP : forall k c, stands c -> dear k c -> is_dear)
   (noteP : forall c g, stands c -> note c = Some g -> is_dear \/ exists2 h, g = Some h & fits h).
 
 Lemma check_keeps t c found f : check t c found = Some f -> {subset found <= f}.
 Proof.
-elim: t c found f => [i t1 IH1 t2 IH2|i t1 IH1 t2 IH2|k t1 IH1 t2 IH2|b t1 IH1 t2 IH2||||k|] c found f /=.
+elim: t c found f => [i t1 IH1 t2 IH2|i t1 IH1 t2 IH2|k t1 IH1 t2 IH2|b t1 IH1 t2 IH2|k t1 IH||||k|] c found f /=.
 1-4: by case: ifP => // _; case e: (check t1 _ _) => [f1|//] h x /(IH1 _ _ _ e); exact: IH2 h x.
+1: by case: (narrow k c) => [c1|//]; exact: IH.
 1-4: by case: ifP => // _ [->].
 by case: (note c) => [[g|]|] // [<-] // x xf; rewrite in_cons xf orbT.
 Qed.
@@ -388,7 +415,7 @@ have later t' c' f1 f2 : check t' c' f1 = Some f2 ->
     lower <= phi (contributed p V) \/ is_dear \/ (exists2 g, g \in f1 & fits g) ->
     lower <= phi (contributed p V) \/ is_dear \/ (exists2 g, g \in f2 & fits g).
   move=> /check_keeps sub [h|[h|[g gf h]]]; [by left|by right; left|right; right; exists g => //; exact: sub].
-elim: t c found f => [i t1 IH1 t2 IH2|i t1 IH1 t2 IH2|k t1 IH1 t2 IH2|b t1 IH1 t2 IH2||||k|] c found f /=.
+elim: t c found f => [i t1 IH1 t2 IH2|i t1 IH1 t2 IH2|k t1 IH1 t2 IH2|b t1 IH1 t2 IH2|k t1 IH||||k|] c found f /=.
 - case: ifP => // oi; case e: (check t1 _ _) => [f1|//] h st.
   have [iV|iV] := boolP (robot_of w i \in C :\: B); last by apply: IH2 h _; apply: (stands_drop st).
   apply: later h _; apply: IH1 e _; exact: (stands_join st (open_below st oi) (open_not_sure oi) iV).
@@ -408,6 +435,7 @@ elim: t c found f => [i t1 IH1 t2 IH2|i t1 IH1 t2 IH2|k t1 IH1 t2 IH2|b t1 IH1 t
 - case: ifP => // _; case e: (check t1 _ _) => [f1|//] h st; have [few|many] := ltnP blinded_size b.
     apply: later h _; apply: IH1 e _; case: (st) => ? ? ? ? [s1 s2]; split=> //=; split; lia.
   apply: IH2 h _; case: (st) => ? ? ? ? [s1 s2]; split=> //=; split; lia.
+- by case ek: (narrow k c) => [c1|//] h st; apply: IH h (narrowP st ek).
 - by case: ifP => // h _ st; left; apply: (known_worth st h).
 - by case: ifP => // h _ st; left; apply: (copies_worthP st h).
 - by case: ifP => // h _ st; have := budgetP st; rewrite h.

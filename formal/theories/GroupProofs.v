@@ -1,4 +1,4 @@
-(** Lower proofs by groups: any so many robots are worth the claim; dual prices show that the groups of an attack that
+(** Lower proofs by groups: any so many robots are worth the claim, or any of some robots; dual prices show that the groups of an attack that
     are not cost too much together, or that those which do not cannot cover the team. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
@@ -11,7 +11,9 @@ Import Order.Theory GRing.Theory Num.Theory.
 
 (** Any [set_size] robots that sense in one group are worth the claim. *)
 Record sets_lemma := Sets { set_size : nat; set_tree : case_tree }.
-Record group_tree := GroupTree { dual : prices; bounds : seq flow_bound; groups : case_tree }.
+(** A limit: the same of those robots that are [limited]. *)
+Record limit := Limit { limited : seq bool; limit_lemma : sets_lemma }.
+Record group_tree := GroupTree { dual : prices; bounds : seq flow_bound; limits : seq limit; groups : case_tree }.
 
 (** A listed group: who is in it; what it costs at least, its robots that are blinded at least, its links to others. *)
 Definition listed_group := (seq bool * (Z * Z * Z))%type.
@@ -25,18 +27,35 @@ Variables (w : network) (S : Type) (start : S) (add : S -> nat -> S) (worth : S 
 Variable (average_worth : S -> seq nat -> nat -> bool).
 Local Notation n := (robots w).
 
-Definition check_sets (l : sets_lemma) : bool :=
-  let k := Z.of_nat (set_size l) in
+Definition set_case (among : seq bool) (size : nat) : case S :=
+  let k := Z.of_nat size in
+  Case start 0 k k Z0 Z0 [seq if nth false among i then Options true false true else only_out | i <- iota 0 n].
+Definition check_sets_among (among : seq bool) (l : sets_lemma) : bool :=
   (set_size l <= n.+1)%N &&
-  if check_cases add worth average_worth (@too_few S) (fun _ _ => false) (fun _ => None : option (option unit))
-       (set_tree l) (Case start 0 k k Z0 Z0 (nseq n (Options true false true))) [::] is Some _ then true else false.
+  if check_cases add worth average_worth (fun _ _ => None) (@too_few S) (fun _ _ => false)
+       (fun _ => None : option (option unit)) (set_tree l) (set_case among (set_size l)) [::] is Some _ then true else false.
+Definition check_sets : sets_lemma -> bool := check_sets_among (nseq n true).
+
+(** What a limit says of a case: so many robots sense at most, and so many are blinded at least. *)
+Definition limit_most (l : limit) : Z := Z.pred (Z.of_nat (set_size (limit_lemma l))).
+Definition count_robots (P : nat -> option_set -> bool) (c : case S) : Z :=
+  Z.of_nat (count (fun i => P i (options_of c i)) (iota 0 n)).
+Definition apply_limit (l : limit) (c : case S) : case S :=
+  let others := count_robots (fun i o => ~~ nth false (limited l) i && may_sense o) c in
+  let within := count_robots (fun i o => nth false (limited l) i && inside o) c in
+  Case (known c) (seen c) (least c) (Z.min (most c) (Z.add (limit_most l) others))
+    (Z.max (low c) (Z.sub within (limit_most l))) (high c) (options c).
+Definition narrow (ls : seq limit) (k : nat) (c : case S) : option (case S) :=
+  if drop k ls is l :: _ then Some (apply_limit l c) else None.
 
 Variables (size_k : nat) (near tied : seq (seq bool)).
 Definition start_case : case S :=
   Case start 0 Z0 (Z.pred (Z.of_nat size_k)) Z0 (Z.of_nat (spare w)) [seq Options true (i \notin kept_robots w) true | i <- iota 0 n].
 
 Variables (t : group_tree).
-Definition tree_ok : bool := prices_ok w (dual t) && all (bound_ok w (dual t) near tied) (bounds t).
+Definition tree_ok : bool :=
+  [&& prices_ok w (dual t), all (bound_ok w (dual t) near tied) (bounds t)
+    & all (fun l => check_sets_among (limited l) (limit_lemma l)) (limits t)].
 Definition is_dear (limit : Z) (k : nat) (c : case S) : bool :=
   if drop k (bounds t) is b :: _ then Z.ltb limit (flow_value w (dual t) near b c) else false.
 
@@ -99,12 +118,12 @@ Fixpoint no_partition (holds : seq (seq listed_group)) (nodes : seq nat) (stack 
 
 Definition check_duals : bool :=
   [&& tree_ok, Z.ltb (slack w (dual t)) Z0
-    & if check_cases add worth average_worth (@beyond_budgets w near tied S) (is_dear (Zneg xH)) (fun _ => None : option (option listed_group))
+    & if check_cases add worth average_worth (narrow (limits t)) (@beyond_budgets w near tied S) (is_dear (Zneg xH)) (fun _ => None : option (option listed_group))
            (groups t) start_case [::] is Some _ then true else false].
 Definition check_cover (nodes : seq nat) : bool :=
   [&& tree_ok, Z.leb Z0 (slack w (dual t))
-    & if check_cases add worth average_worth (@beyond_budgets w near tied S) (is_dear (slack w (dual t))) list_group
-           (groups t) start_case [::] is Some found then
+    & if check_cases add worth average_worth (narrow (limits t)) (@beyond_budgets w near tied S) (is_dear (slack w (dual t)))
+           list_group (groups t) start_case [::] is Some found then
         let gs := distinct (rev found) in
         all (fun g => [&& Z.leb Z0 (costs g), Z.leb Z0 (needs g) & Z.leb Z0 (loses g)]) gs &&
         no_partition [seq [seq g <- gs | nth false (who g) i] | i <- iota 0 n] nodes [:: (nseq n false, (Z0, Z0, Z0))]
@@ -147,28 +166,41 @@ Local Notation element := 'I_(top_element w).+1.
 Variables (F : realFieldType) (phi : {set element} -> F) (p : {ffun robot -> element}) (lower : F).
 Local Notation below := (fun i => (i < robots w)%N).
 Hypotheses (worthP : worth_test start add phi p lower worth) (averageP : average_test start add phi p lower average_worth).
+Local Notation check_sets_among := (check_sets_among w start add worth average_worth).
 Local Notation check_sets := (check_sets w start add worth average_worth).
 
-Theorem check_setsP l (V : {set robot}) : check_sets l -> (set_size l <= #|V|)%N -> lower <= phi (contributed p V).
+Theorem check_sets_amongP among l (V : {set robot}) : check_sets_among among l ->
+  (set_size l <= #|[set i in V | nth false among i]|)%N -> lower <= phi (contributed p V).
 Proof.
-rewrite /GroupProofs.check_sets; set k := set_size l => /andP[_]; case e: (check_cases _ _ _ _ _ _ _ _ _) => [f|//] _ le.
+rewrite /GroupProofs.check_sets_among; set k := set_size l => /andP[_]; case e: (check_cases _ _ _ _ _ _ _ _ _ _) => [f|//] _ le.
 have [C CV cC] := part_of_size le.
+have inC (i : robot) : i \in C -> (i \in V) && nth false among i by move/(subsetP CV); rewrite inE.
 have sC : sensing_size C set0 = k by rewrite /sensing_size setD0.
 have bC : blinded_size C set0 = 0%N by rewrite /blinded_size setI0 cards0.
-have sub : C :\: set0 \subset V by rewrite setD0.
-pose first := Case start 0 (Z.of_nat k) (Z.of_nat k) Z0 Z0 (nseq (robots w) (Options true false true)).
-have first_options i : options_of first i = if (i < robots w)%N then Options true false true else nothing.
-  by rewrite /options_of nth_nseq.
-have st : stands start add C set0 first.
-  split; rewrite ?size_nseq ?sC ?bC //; last by split; apply: Z.le_refl.
-  - by exists [::]; split=> // i; rewrite first_options; case: ifP.
-  by move=> i; rewrite /may_be first_options ltn_ord !inE; case: ifP.
+have sub : C :\: set0 \subset V by rewrite setD0; apply/subsetP => i /inC /andP[].
+have first_options i : options_of (set_case w start among k) i =
+    if (i < robots w)%N then (if nth false among i then Options true false true else only_out) else nothing.
+  rewrite /options_of -[options _]/(map _ (iota 0 (robots w))).
+  case: ltnP => il; first by rewrite (nth_map 0%N) ?size_iota // nth_iota.
+  by rewrite nth_default // size_map size_iota.
+have st : stands start add C set0 (set_case w start among k).
+  split; rewrite ?size_map ?size_iota ?sC ?bC //; last by split; apply: Z.le_refl.
+  - by exists [::]; split=> // i; rewrite first_options; case: ifP => //; case: ifP.
+  move=> i; rewrite /may_be first_options ltn_ord !inE; case: ifP => [/inC /andP[_ ->] //|_].
+  by case: ifP.
 have budget (c : case S) : stands start add C set0 c -> ~~ too_few c by apply: not_too_few.
+have no_limit (i : nat) (c c' : case S) : stands start add C set0 c -> None = Some c' -> stands start add C set0 c' by [].
 have no_dear (i : nat) (c : case S) : stands start add C set0 c -> false -> False by [].
 have no_list (c : case S) (g : option unit) : stands start add C set0 c -> None = Some g ->
   False \/ exists2 h, g = Some h & False by [].
-by have [//|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub budget
+by have [//|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub no_limit budget
   no_dear no_list e st.
+Qed.
+
+Theorem check_setsP l (V : {set robot}) : check_sets l -> (set_size l <= #|V|)%N -> lower <= phi (contributed p V).
+Proof.
+move=> h le; apply: check_sets_amongP h _; apply: leq_trans le _; apply: subset_leq_card; apply/subsetP => i iV.
+by rewrite inE iV nth_nseq ltn_ord.
 Qed.
 
 (** ** The groups of one attack that leaves none worth the claim *)
@@ -181,10 +213,10 @@ Local Notation near := (rows_of w (link_list w)).
 Local Notation tied := (rows_of w (kept_links w)).
 Local Notation d := (dual t).
 Local Notation root_case := (start_case w start size_k).
-Hypothesis tree_good : tree_ok w near tied t.
+Hypothesis tree_good : tree_ok w start add worth average_worth near tied t.
 
 Lemma prices_good : prices_ok w d.
-Proof. by case/andP: tree_good. Qed.
+Proof. by case/and3P: tree_good. Qed.
 
 Section OneGroup.
 Variable r : robot.
@@ -221,9 +253,23 @@ Lemma is_dearP limit k c : stands start add C B c -> is_dear w near t limit k c 
 Proof.
 move=> st; rewrite /is_dear; case ed: (drop k (bounds t)) => [//|b bs] /Z.ltb_lt lt.
 have good : bound_ok w d near tied b.
-  by case/andP: tree_good => _; rewrite -(cat_take_drop k (bounds t)) all_cat ed => /and3P[].
+  by case/and3P: tree_good => _ + _; rewrite -(cat_take_drop k (bounds t)) all_cat ed => /and3P[].
 apply: Z.lt_le_trans lt _.
 exact: (flow_valueP (part_links ok oka r) (@untied_part _ _ ok oka r) st prices_good good).
+Qed.
+
+Lemma narrowP k c c' : stands start add C B c -> narrow w (limits t) k c = Some c' -> stands start add C B c'.
+Proof.
+move=> st; rewrite /narrow; case el: (drop k (limits t)) => [//|l ls] [<-].
+have /(check_sets_amongP (V := C :\: B)) lemma : check_sets_among (limited l) (limit_lemma l).
+  by case/and3P: tree_good => _ _; rewrite -(cat_take_drop k (limits t)) all_cat el => /and3P[].
+set R := nth false (limited l) in lemma *.
+have few : (#|[set i in C :\: B | R i]| < set_size (limit_lemma l))%N.
+  by rewrite ltnNge; apply: contra (poor r); rewrite sees_part; apply: lemma.
+have := limited_sensing st R; have := limited_blinded st R.
+case: (st) => ? ? ? [s1 s2] [b1 b2] le1 le2; split=> //=; rewrite /limit_most /count_robots -/R.
+all: move: few le1 le2 s1 s2 b1 b2; clear.
+all: by move: #|_| (count _ _) (count _ _) (sensing_size _ _) (blinded_size _ _) => few others within s b; split; lia.
 Qed.
 
 Lemma no_budgetP c : stands start add C B c -> ~~ beyond_budgets w near tied c.
@@ -264,12 +310,12 @@ Qed.
 (** The group costs more than the limit, or is listed. *)
 Lemma group_found limit note found (P : listed_group -> Prop) : (forall c o, stands start add C B c -> note c = Some o ->
     Z.lt limit real_cost \/ exists2 g, o = Some g & P g) ->
-  check_cases add worth average_worth (@beyond_budgets w near tied S) (is_dear w near t limit) note (groups t) root_case [::] =
-    Some found ->
+  check_cases add worth average_worth (narrow w (limits t)) (@beyond_budgets w near tied S) (is_dear w near t limit) note
+    (groups t) root_case [::] = Some found ->
   Z.lt limit real_cost \/ exists2 g, g \in found & P g.
 Proof.
 move=> noteP h.
-have [le|//] := check_casesP worthP averageP (fintype.subxx _) no_budgetP (fun k c st => @is_dearP limit k c st) noteP h root_stands.
+have [le|//] := check_casesP worthP averageP (fintype.subxx _) narrowP no_budgetP (fun k c st => @is_dearP limit k c st) noteP h root_stands.
 by have := poor r; rewrite sees_part le.
 Qed.
 End OneGroup.
@@ -283,7 +329,7 @@ Qed.
 
 Theorem no_duals : ~~ check_duals w start add worth average_worth size_k near tied t.
 Proof.
-apply/negP => /and3P[_ /Z.ltb_lt neg]; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] _.
+apply/negP => /and3P[_ /Z.ltb_lt neg]; case h: (check_cases _ _ _ _ _ _ _ _ _ _) => [found|//] _.
 have each r : roots e r -> Z.le 0 (cost d (part a r) B).
   move=> rr; have nothing_listed c (o : option listed_group) : stands start add (part a r) B c -> None = Some o ->
     Z.lt (Zneg xH) (cost d (part a r) B) \/ exists2 g, o = Some g & False by [].
@@ -364,7 +410,7 @@ End Cover.
 
 Theorem no_cover nodes : ~~ check_cover w start add worth average_worth size_k near tied t nodes.
 Proof.
-apply/negP => /and3P[_ /Z.leb_le pos]; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] /andP[valid none].
+apply/negP => /and3P[_ /Z.leb_le pos]; case h: (check_cases _ _ _ _ _ _ _ _ _ _) => [found|//] /andP[valid none].
 set gs := distinct (rev found) in valid none.
 have each r : roots e r -> Z.lt (slack w d) (cost d (part a r) B) \/ exists2 g, g \in gs & fits r g.
   move=> rr; have [lt|[g gf [sg mg cg ng lg]]] := group_found rr (list_groupP rr) h; first by left.
@@ -419,14 +465,14 @@ Qed.
 Theorem dualsP t : check_duals w start add worth average_worth (set_size l) near tied t ->
   lower <= team_value (team_of w) phi p a.
 Proof.
-move=> h; apply: contraLR (h) => /poor_groups poor; have good : tree_ok w near tied t by case/andP: h.
+move=> h; apply: contraLR (h) => /poor_groups poor; have good : tree_ok w start add worth average_worth near tied t by case/andP: h.
 exact: (no_duals ok worthP averageP (fun V => check_setsP worthP averageP (V := V) sets) oka poor good).
 Qed.
 
 Theorem coverP t nodes : check_cover w start add worth average_worth (set_size l) near tied t nodes ->
   lower <= team_value (team_of w) phi p a.
 Proof.
-move=> h; apply: contraLR (h) => /poor_groups poor; have good : tree_ok w near tied t by case/andP: h.
+move=> h; apply: contraLR (h) => /poor_groups poor; have good : tree_ok w start add worth average_worth near tied t by case/andP: h.
 exact: (no_cover ok worthP averageP (fun V => check_setsP worthP averageP (V := V) sets) oka poor good nodes).
 Qed.
 End Conclusions.

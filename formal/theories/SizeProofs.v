@@ -302,11 +302,12 @@ Qed.
 
 Lemma no_tree tree : ~~ check_group w start add worth average_worth near tied t ks (x0, y0) tree.
 Proof.
-apply/negP; rewrite /check_group; case h: (check_cases _ _ _ _ _ _ _ _ _) => [found|//] _.
+apply/negP; rewrite /check_group; case h: (check_cases _ _ _ _ _ _ _ _ _ _) => [found|//] _.
 have none (c : case S) (o : option unit) : stands start add (group_of r0) B c -> None = Some o ->
   False \/ exists2 g, o = Some g & False by [].
+have no_limit (k : nat) (c c' : case S) : stands start add (group_of r0) B c -> None = Some c' -> stands start add (group_of r0) B c' by [].
 have sub : group_of r0 :\: B \subset group_of r0 :\: blinded a0 by apply: setDS.
-have [le|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub no_budget not_costly none
+have [le|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub no_limit no_budget not_costly none
   h case_stands.
 by have := poor r0; rewrite sees_group // le.
 Qed.

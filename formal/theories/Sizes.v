@@ -176,7 +176,7 @@ Definition is_costly (ls : seq (option Z)) (robots_in : nat) (k : nat) (c : case
     else false
   else false.
 Definition check_group (ks : seq known_costs) (ab : nat * nat) (tree : case_tree) : bool :=
-  if check_cases add worth average_worth (@beyond_budgets w near tied S) (is_costly (limits ks ab.1 ab.2) (ab.1 + ab.2))
+  if check_cases add worth average_worth (fun _ _ => None) (@beyond_budgets w near tied S) (is_costly (limits ks ab.1 ab.2) (ab.1 + ab.2))
        (fun _ => None : option (option unit)) tree (size_case ab.1 ab.2) [::] is Some _ then true else false.
 Fixpoint check_groups (ks : seq known_costs) (gs : seq (nat * nat)) (trees : seq case_tree) : bool :=
   match gs, trees with

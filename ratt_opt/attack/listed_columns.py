@@ -100,6 +100,11 @@ class ListedColumns:
         self._covers: tuple[Columns, ExactCover] | None = None
         """Columns within the gap, and the search of covers by them, if it is begun."""
 
+    @property
+    def limits(self) -> list[tuple[int, int]]:
+        """Those that are known (:class:`MostBelow`)."""
+        return self._most_below.limits
+
     def decide(self, budget: Budget) -> Answer:
         """Decide the threshold, or leave it open if too many columns are within the gap.
 
@@ -150,9 +155,9 @@ class ListedColumns:
 
     def _restrict(self) -> None:
         """Tell the columns the limits that they do not have."""
-        for limit in self._most_below.limits[self._restricted :]:
+        for limit in self.limits[self._restricted :]:
             self._columns.restrict(*limit, self._threat)
-        self._restricted = len(self._most_below.limits)
+        self._restricted = len(self.limits)
 
     def _still_possible(self) -> list[Column]:
         """Columns of the last program, with the robots that are now to blind in them."""
@@ -162,13 +167,13 @@ class ListedColumns:
 
     def _has_limited(self, columns: Sequence[Column], budget: Budget) -> bool:
         """Ask how many robots are to blind in columns; whether limits were added because that is more than known."""
-        before = len(self._most_below.limits)
+        before = len(self.limits)
         for column in columns:
             budget.check()
             most = self._most_below.of(column.group, budget)
             if most < column.group.bit_count() - column.blinded and most < self._most_below.known(column.group):
                 self._most_below.limit(column.group, most, budget)
-        return len(self._most_below.limits) > before
+        return len(self.limits) > before
 
     def _partition(self, cover: Sequence[Column]) -> Partition:
         """The attack that leaves these groups."""

@@ -3,11 +3,12 @@
 All groups that an attack may leave (``listed_columns.py``), or the attacker's search (``attack/dual_prices``) if there
 are too many, give duals at which no group below the threshold costs less than nothing. Here they become integers, a
 tree closes or lists the groups (``group_tree.py``), and if some are listed, a search shows that they do not partition
-the team.
+the team. Limits that were found with the duals have proofs of their own, if the tree names them.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,15 +18,16 @@ from ratt_opt.attack.pricing import Question
 from ratt_opt.attack.threshold_search import Threshold
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import group_tree, sets_proof
-from ratt_opt.certificates.listed_columns import duals_of_all_groups
+from ratt_opt.certificates.listed_columns import LinkDuals, duals_of_all_groups
 from ratt_opt.certificates.plan_sets import NotClosedError
 from ratt_opt.certificates.verifier.duals import Listed
-from ratt_opt.certificates.verifier.work import seconds_left, tick
+from ratt_opt.certificates.verifier.work import limited, seconds_left, tick
+from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.communication import robots_of
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
     from ratt_opt.attack.pricing import Plan
+    from ratt_opt.certificates.group_tree import GroupTree, Limit
     from ratt_opt.certificates.plan_sets import PlanSets
     from ratt_opt.graph.threat import Threat
 
@@ -38,6 +40,10 @@ SEARCHED = 2_000_000
 """Nodes of the search for duals: seconds, up to half a minute at 30 robots."""
 MOST_PARTITIONS = 200_000
 """Nodes of the search of partitions."""
+SHARE_OF_SHORTER = 0.3
+"""Of the seconds left, to look for a proof without limits."""
+LARGEST_LIMITS = 400_000
+"""Most nodes of all proofs of limits, as the verifier reads files of two million numbers."""
 
 
 def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
@@ -47,12 +53,16 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     ------
     NotClosedError : no duals were found, a group is left, or a tree is too large.
     """
-    threat, question = sets.problem.threat, _question(sets)
+    threat, plan = sets.problem.threat, sets.plan
+    duals = duals_of_all_groups(plan, sets.threshold) or _searched_duals(plan, sets)
+    lemma, limits = _lemma(sets, duals.limits, max_nodes)
+    robots, blinded = np.floor(duals.robots * UNIT).astype(np.int64), int(np.ceil(duals.blinded * UNIT))
+    question = Question(sets.threshold, lemma["size"] - 1, robots, blinded, 0, UNIT)
     slack = 2 * threat.alpha_c * UNIT - question.claim(threat.n_blinded)
     question = replace(question, limit=max(slack, -1))
-    record: dict[str, Any] = {"sets": sets_proof(sets, question.most + 1, max_nodes)}
+    tree, proofs = _shorter(sets, question, *_limited_tree(sets, question, limits, max_nodes))
+    record: dict[str, Any] = {"sets": lemma, **({"limits": proofs} if proofs else {})}
     record["duals"] = {"link": UNIT, "robots": question.duals.tolist(), "blinded": question.blinding}
-    tree = group_tree(sets, question, max_nodes)
     record |= {"bounds": tree.bounds, "tree": tree.nodes}
     if slack < 0:
         return {"conclusion": "duals", **record}
@@ -60,17 +70,8 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     return {"conclusion": "cover", **record, "partition": _partition(listed, threat, slack)}
 
 
-def _question(sets: PlanSets) -> Question:
-    """Duals that refute the threshold, in units, and the largest size of a set below it."""
-    plan = sets.plan
-    most = plan.most_below(sets.threshold)
-    duals = duals_of_all_groups(plan, sets.threshold) or _searched_duals(plan, sets)
-    robots, blinded = (np.floor(duals[0] * UNIT).astype(np.int64), int(np.ceil(duals[1] * UNIT)))
-    return Question(sets.threshold, most, robots, blinded, 0, UNIT)
-
-
-def _searched_duals(plan: Plan, sets: PlanSets) -> tuple[FloatArray, float]:
-    """Those with which the attacker's search refutes the threshold [links that leave a group]."""
+def _searched_duals(plan: Plan, sets: PlanSets) -> LinkDuals:
+    """Those with which the attacker's search refutes the threshold."""
     from ratt_opt.attack.dual_prices import ThresholdDecision
 
     seconds = seconds_left()
@@ -81,7 +82,63 @@ def _searched_duals(plan: Plan, sets: PlanSets) -> tuple[FloatArray, float]:
         raise NotClosedError from None
     if answer.verdict is not Threshold.REFUTED or answer.prices is None:
         raise NotClosedError
-    return 2 * answer.prices.robot, 2 * answer.prices.blinded  # prices are about half links
+    return LinkDuals(2 * answer.prices.robot, 2 * answer.prices.blinded, [])  # prices are about half links
+
+
+def _lemma(sets: PlanSets, limits: list[Limit], max_nodes: int) -> tuple[dict[str, Any], list[Limit]]:
+    """The smallest size that is known of which all sets are worth the threshold, with its proof, and the other limits.
+
+    Raises
+    ------
+    NotClosedError : no such proof is small enough.
+    """
+    everyone = (1 << sets.plan.robots) - 1
+    of_team = [most for limited, most in limits if limited == everyone]
+    others = [limit for limit in dict.fromkeys(limits) if limit[0] != everyone]
+    for most in sorted({*of_team, sets.plan.most_below(sets.threshold)}):
+        with suppress(NotClosedError):
+            return sets_proof(sets, most + 1, max_nodes), others
+    raise NotClosedError
+
+
+def _limited_tree(
+    sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int
+) -> tuple[GroupTree, list[dict[str, Any]]]:
+    """The tree of groups, and the limits that it names, with their proofs; it does without one of too large a proof.
+
+    Raises
+    ------
+    NotClosedError : a group is neither closed nor listed, or the tree is too large.
+    """
+    while True:
+        tree, proofs, left = group_tree(sets, question, max_nodes, limits), [], LARGEST_LIMITS
+        for limit in tree.used:
+            try:
+                proofs.append(_limit_proof(sets, limit, min(left, max_nodes)))
+            except NotClosedError:
+                limits = [one for one in limits if one != limit]
+                break
+            left -= len(proofs[-1]["tree"])
+        else:
+            return tree, proofs
+
+
+def _shorter(
+    sets: PlanSets, question: Question, tree: GroupTree, proofs: list[dict[str, Any]]
+) -> tuple[GroupTree, list[dict[str, Any]]]:
+    """The same, or a tree without limits if that has fewer nodes in all: one that is used once says too much."""
+    nodes = len(tree.nodes) + sum(len(proof["tree"]) for proof in proofs)
+    if proofs:
+        with suppress(NotClosedError, UndecidedError), limited(SHARE_OF_SHORTER * seconds_left()):
+            plain = group_tree(sets, question, nodes)
+            if len(plain.nodes) < nodes:
+                return plain, []
+    return tree, proofs
+
+
+def _limit_proof(sets: PlanSets, limit: Limit, max_nodes: int) -> dict[str, Any]:
+    limited, most = limit
+    return {"robots": list(robots_of(limited)), **sets_proof(sets, most + 1, max_nodes, limited)}
 
 
 def _listed(threat: Threat, question: Question, robots: int, need: int) -> Listed:

@@ -16,6 +16,7 @@ QUESTIONS = {
     "inside": ("is robot {} in the group?", "yes", "no"),
     "sensing": ("do at least {} robots of the group sense?", "yes", "no"),
     "blinded": ("are fewer than {} robots of the group blinded?", "yes", "no"),
+    "limit": ("limit {} says how many robots sense at most, and how many are blinded at least", "so"),
 }
 LEAVES = {
     "worth": "the robots that sense for sure are worth the claim",
@@ -56,6 +57,10 @@ def explained(document: dict[str, Any]) -> list[str]:
         size = lower["sets"]["size"]
         lines += ["", f"Any {size} robots that sense in one group are worth the claim. Take any {size}:"]
         lines += _tree(lower["sets"]["tree"])
+    for k, limit in enumerate(lower.get("limits", [])):
+        size, robots = limit["size"], _robots(limit["robots"])
+        lines += ["", f"Limit {k}: any {size} of robots {robots} are worth the claim, too. Take any {size} of them:"]
+        lines += _tree(limit["tree"])
     for tree in [lower["tree"]] if "tree" in lower else lower.get("trees", []):
         lines += ["", "Take any group of such an attack:", *_tree(tree)]
     return lines
@@ -96,8 +101,8 @@ def _lines(nodes: list[Any]) -> Iterator[str]:
         name, number = (node, None) if isinstance(node, str) else next(iter(node.items()))
         margin = "  " * depth + answer
         if name in QUESTIONS:
-            question, first, second = QUESTIONS[name]
+            question, *answers = QUESTIONS[name]
             yield margin + question.format(number)
-            waiting += [(depth + 1, f"{second}: "), (depth + 1, f"{first}: ")]
+            waiting += [(depth + 1, f"{answer}: ") for answer in reversed(answers)]
         else:
             yield margin + LEAVES[name].format(number)

@@ -14,20 +14,27 @@ from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
+
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.pricing import Plan
     from ratt_opt.certificates.plan_sets import PlanSets
 
 __all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
 
+Limit = tuple[int, int]
+"""A set of robots (bit mask), and the most of these that sense in a group below the threshold."""
 CASES = 100
 """Between two looks at the clock: some hundredths of a second."""
 CRITERIA, MOST_CRITERIA = 4_000_000, 256_000_000
 """Criteria of single targets for a tree over sets: between two looks at the clock, a tenth of a second; and at most."""
-MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 5_000, 20_000, 700_000
+MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 8_000, 20_000, 700_000
 """Of a tree; and numbers in all of its flows, as the verifier reads files of two million."""
-BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded"), ("worth", "copies", "budget", "flow", "listed")
+BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded", "limit"), ("worth", "copies", "budget", "flow", "listed")
 """Nodes by the numbers that the loops have for them."""
+NUMBERED = (*BRANCHES, "flow")
 FINISHED, PAUSED, FULL = range(3)
 
 
@@ -49,43 +56,63 @@ class TreeRecord(Structure):
             )
         ),
         *((name, c_void_p) for name in ("nodes", "flows", "recent", "listed", "needs")),
+        ("n_limits", c_int64),
+        *((name, c_void_p) for name in ("limited", "most", "uses")),
     ]
 
 
 @dataclass(frozen=True, slots=True)
 class GroupTree:
     """``nodes`` in preorder as a certificate has them; ``bounds`` : prices and flows; ``listed`` : masks of groups, and
-    how many of each are blinded at least."""
+    how many of each are blinded at least; ``used`` : limits that nodes name, which they do by their places here."""
 
     nodes: list[Any]
     bounds: list[dict[str, Any]]
     listed: list[tuple[int, int]]
+    used: list[Limit]
 
 
 class _Trees:
     """The arrays that a tree is written to."""
 
     def __init__(
-        self, plan: Plan, limit: int, max_nodes: int, *, averages: bool, flows: int = 0, listed: int = 0
+        self,
+        plan: Plan,
+        limit: int,
+        max_nodes: int,
+        *,
+        averages: bool,
+        flows: int = 0,
+        listed: int = 0,
+        limits: Sequence[Limit] = (),
     ) -> None:
         robots, arcs = plan.robots, len(plan.links.robot)
-        self.nodes = np.zeros((max_nodes + 4 * robots + 8, 2), np.int64)
+        self.nodes = np.zeros((max_nodes + 4 * robots + 12, 2), np.int64)
         self.flows, self.recent = np.zeros((flows, 2 + arcs), np.int64), np.zeros(flows + 1, np.int64)
         self.listed, self.needs = np.zeros((listed, robots), np.int8), np.zeros(listed, np.int64)
+        self.limited = _rows([limited for limited, _ in limits], robots)
+        self.most, self.uses = np.array([most for _, most in limits], np.int64), np.zeros(len(limits), np.int64)
         arrays = self.nodes, self.flows, self.recent, self.listed, self.needs
-        self.record = TreeRecord(limit, averages, 0, len(self.nodes), 0, flows, 0, listed, *map(address, arrays))
+        limited = self.limited, self.most, self.uses
+        numbers = limit, averages, 0, len(self.nodes), 0, flows, 0, listed
+        self.record = TreeRecord(*numbers, *map(address, arrays), len(limits), *map(address, limited))
 
     def named(self) -> list[Any]:
         """The nodes as a certificate has them."""
-        names = (*BRANCHES, *LEAVES)
+        names, places = (*BRANCHES, *LEAVES), (np.cumsum(self.uses > 0) - 1).tolist()
+        written = ((names[kind], number) for kind, number in self.nodes[: self.record.count].tolist())
         return [
-            {names[kind]: number} if kind < len(BRANCHES) or names[kind] == "flow" else names[kind]
-            for kind, number in self.nodes[: self.record.count].tolist()
+            {name: places[number] if name == "limit" else number} if name in NUMBERED else name
+            for name, number in written
         ]
 
 
-def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
-    """Return the record of a proof that any ``size`` robots are worth the threshold.
+def _rows(masks: Iterable[int], robots: int) -> NDArray[np.int8]:
+    return np.array([[mask >> i & 1 for i in range(robots)] for mask in masks], np.int8).reshape(-1, robots)
+
+
+def sets_proof(sets: PlanSets, size: int, max_nodes: int, among: int | None = None) -> dict[str, Any]:
+    """Return the record of a proof that any ``size`` robots are worth the threshold, or any of those in a bit mask.
 
     Raises
     ------
@@ -96,21 +123,24 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int) -> dict[str, Any]:
         return {"size": size, "tree": ["budget"]}
     trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages)
     nobody = np.zeros(plan.robots, dtype=np.int64)
-    call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_void_p] * 2, *[c_int64] * 2)
+    call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_void_p] * 3, *[c_int64] * 2)
+    members = _rows([(1 << plan.robots) - 1 if among is None else among], plan.robots)
     rows, depth = np.zeros((plan.robots + 1, 3), np.int32), np.full(1, -1, np.int32)
     effort, looked, code = CRITERIA // sets.objective.n_targets, 0, PAUSED
     with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody) as search:
         while code == PAUSED and looked < MOST_CRITERIA:
             tick()
             tell(COVERING, trees.record.count)
-            code = call(search.handle, byref(trees.record), address(rows), address(depth), size, effort)
+            code = call(
+                search.handle, byref(trees.record), address(members), address(rows), address(depth), size, effort
+            )
             looked += CRITERIA
     if code != FINISHED:
         raise NotClosedError
     return {"size": size, "tree": trees.named()}
 
 
-def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
+def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Sequence[Limit] = ()) -> GroupTree:
     """Return a tree that closes or lists each group that costs at most ``question.limit``.
 
     Raises
@@ -120,7 +150,7 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
     plan = sets.plan
     averages, links = sets.objective.verifier_averages, len(plan.threat.graph.links)
     flows = min(MOST_FLOWS, FLOW_NUMBERS // max(links, 1))
-    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=MOST_LISTED)
+    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=MOST_LISTED, limits=limits)
     first = np.argsort(-question.duals, kind="stable").astype(np.int64)
     call = function("grow_group_tree", c_int, c_void_p, POINTER(TreeRecord), c_int64)
     record, code = trees.record, PAUSED
@@ -133,7 +163,8 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int) -> GroupTree:
         raise NotClosedError
     masks = [sum(1 << int(i) for i in np.flatnonzero(row)) for row in trees.listed[: record.n_listed]]
     bounds = [_bound(plan, flow) for flow in trees.flows[: record.n_flows]]
-    return GroupTree(trees.named(), bounds, list(zip(masks, trees.needs[: record.n_listed].tolist(), strict=True)))
+    listed = list(zip(masks, trees.needs[: record.n_listed].tolist(), strict=True))
+    return GroupTree(trees.named(), bounds, listed, [limits[k] for k in np.flatnonzero(trees.uses).tolist()])
 
 
 def _bound(plan: Plan, flow: IntArray) -> dict[str, Any]:

@@ -5,20 +5,23 @@ The best duals of the attacker's linear program that has them all: they claim mo
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.columns import UNIT
 from ratt_opt.attack.listed_columns import ListedColumns
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.verifier.work import seconds_left
+from ratt_opt.graph.communication import mask_of
 from ratt_opt.graph.group_list import MOST_CUT, groups_of
 from ratt_opt.graph.separable_groups import LARGEST_MASK
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.attack.pricing import Plan
+    from ratt_opt.certificates.group_tree import Limit
 
-__all__ = ["duals_of_all_groups"]
+__all__ = ["LinkDuals", "duals_of_all_groups"]
 
 SECONDS, SHARE = 20.0, 0.3
 """For the list, at most; and of the seconds left."""
@@ -29,8 +32,20 @@ MARGIN = 0.02
 every group has. Measured on fourteen networks of 24 robots: trees are shorter by a tenth than without slack."""
 
 
-def duals_of_all_groups(plan: Plan, threshold: float) -> tuple[FloatArray, float] | None:
-    """Duals of robots (N,) and of a blinded one [links that leave a group]; ``None`` if there are too many groups."""
+@dataclass(frozen=True, slots=True)
+class LinkDuals:
+    """Duals of ``robots`` (N,) and of a ``blinded`` one [links that leave a group], and what was known to find them.
+
+    ``limits`` : those of sets without protected robots
+    """
+
+    robots: FloatArray
+    blinded: float
+    limits: list[Limit]
+
+
+def duals_of_all_groups(plan: Plan, threshold: float) -> LinkDuals | None:
+    """Return the duals; ``None`` if there are too many groups."""
     if plan.robots > LARGEST_MASK or plan.threat.alpha_c > MOST_CUT:
         return None
     budget, groups, threat = Budget(min(SECONDS, SHARE * seconds_left())), groups_of(plan.threat), plan.threat
@@ -44,4 +59,6 @@ def duals_of_all_groups(plan: Plan, threshold: float) -> tuple[FloatArray, float
     robots, blinded = found.robots / UNIT, found.blinding / UNIT
     claim = float(robots.sum()) - threat.n_blinded * blinded
     scale = min(1.0, (2 * threat.alpha_c + MARGIN) / claim) if claim > 0 else 1.0
-    return robots * scale, blinded * scale
+    protected = mask_of(threat.protected_robots)
+    limits = [limit for limit in columns.limits if not limit[0] & protected]
+    return LinkDuals(robots * scale, blinded * scale, limits)

@@ -23,7 +23,7 @@ from ratt_opt import (
     problem_document,
     ratt,
 )
-from ratt_opt.certificates import listed_columns, write
+from ratt_opt.certificates import covers, listed_columns, write
 from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
@@ -40,6 +40,7 @@ __all__ = [
     "CRITERIA",
     "ENUMERATED",
     "GRAPH_PROOFS",
+    "LIMITED",
     "UndecidedError",
     "accepted_leaves",
     "check",
@@ -55,6 +56,7 @@ __all__ = [
     "statement",
     "step",
     "tick",
+    "unclosed",
     "watched",
     "weaker_lower_proof",
 ]
@@ -62,19 +64,28 @@ __all__ = [
 
 PROVERS = {"cover": (cover_proof, 50_000), "sizes": (group_size_proof, 50_000)}
 GRAPH_PROOFS = list(PROVERS)
+LIMITED = (6, 13, 45, 49, 51, 95)
+"""Seeds of small proofs by duals and covers that have limits."""
 
 STEPS = {
-    "lower end": "lower_proof",
-    "upper end": "upper_record",
-    "verification": "verify_certificate",
-    "writing": "_write_verified",
+    "lower end": (write, "lower_proof"),
+    "upper end": (write, "upper_record"),
+    "verification": (write, "verify_certificate"),
+    "writing": (write, "_write_verified"),
+    "a limit": (covers, "_limit_proof"),
 }
 """What certifying is made of."""
 
 
 def step(patch, name, instead):
     """Let ``instead(real)`` do a step of certifying."""
-    patch.setattr(write, STEPS[name], instead(getattr(write, STEPS[name])))
+    where, what = STEPS[name]
+    patch.setattr(where, what, instead(getattr(where, what)))
+
+
+def unclosed(*_):
+    """No proof."""
+    raise NotClosedError
 
 
 SLACK = -1.0

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ratt_opt import TraceObjective, worst_case_attack
+from ratt_opt import TraceObjective, network_scenario, ratt, worst_case_attack
 from tests.certificates.engine import (
     CRITERIA,
     GRAPH_PROOFS,
+    LIMITED,
     accepted_leaves,
     drawn,
     drawn_of_part,
@@ -18,6 +19,8 @@ from tests.certificates.engine import (
     proof,
     refuse,
     small_proofs,
+    step,
+    unclosed,
 )
 from tests.certificates.mutants import refused_lower_ends
 
@@ -76,6 +79,35 @@ def test_no_mutated_proof_hides_a_false_claim(kind, tmp_path):
     seeds, share = MUTATED[kind]
     proofs = small_proofs(kind, range(seeds))
     assert refused_lower_ends(proofs, np.random.default_rng(52), share, tmp_path / "m.json") >= 50
+
+
+def test_no_mutated_limit_hides_a_false_claim(tmp_path):
+    proofs = list(small_proofs("cover", LIMITED))
+    for problem, plan, worst, part in proofs:
+        assert part["limits"]
+        without = {name: value for name, value in part.items() if name != "limits"}
+        refuse(problem, plan, without, worst * (1 - 2e-7), "must be an integer")
+    assert refused_lower_ends(proofs, np.random.default_rng(53), 0.15, tmp_path / "m.json") >= 100
+
+
+def test_a_limit_without_a_proof_is_done_without(monkeypatch):
+    """The cases that it would close have proofs of their own."""
+    step(monkeypatch, "a limit", lambda _: unclosed)
+    for problem, plan, worst, part in small_proofs("cover", LIMITED):
+        assert "limits" not in part
+        assert accepted_leaves(problem, plan, part, worst * (1 - 2e-7)) > 0
+
+
+@pytest.mark.parametrize("family", ["hubs", "disk-12"])
+def test_thirty_robots(family):
+    """The attack closes in a second; its proof needs to know how many robots sense at most."""
+    problem = network_scenario(family, 30, 25, alpha_s=0.2, alpha_c=0.15, seed=0).problem("trace")
+    plan = ratt(problem).elements
+    found = worst_case_attack(problem, plan, time_limit=60)
+    part = proof("cover", problem, plan, found.lower * (1 - 1e-9), 300_000)
+    assert ("limits" in part) == (family == "disk-12")
+    assert accepted_leaves(problem, plan, part, found.lower * (1 - 2e-9)) > 0
+    refuse(problem, plan, part, found.upper * (1 + 1e-6))
 
 
 @pytest.mark.slow

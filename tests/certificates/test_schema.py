@@ -61,6 +61,11 @@ def documents(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     low = made["trace, path"]["claim"] | {"lower": 0.0}
     cover = {**duals, "conclusion": "cover", "partition": [0], "tree": ["worth"]}
     cover["duals"] = {"link": 0, "robots": [0, 0, 0], "blinded": 0}
+    limits = [{"robots": [0, 2], "size": 0, "tree": ["worth"]}]
+    made["limits"] = made["trace, path"] | {
+        "claim": low,
+        "lower": cover | {"limits": limits, "tree": [{"limit": 0}, "worth"]},
+    }
     made["cover"] = made["trace, path"] | {"claim": low, "lower": cover}
     sized = proof("sizes", problem, plan, 0.0, 1000)
     sized["bounds"] = [{"duals": 0, "diagonal": [0, 0, 0]}]

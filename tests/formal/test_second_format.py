@@ -7,9 +7,12 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 
-from tests.formal.verified import decisions
+from tests.certificates.cases import certified
+from tests.certificates.engine import LIMITED, small_proofs
+from tests.formal.verified import decisions, python_decision, sweep
 
 PATH, TRIANGLE = [[0, 1], [1, 2]], [[0, 1], [0, 2], [1, 2]]
 PAIRS = {"size": 2, "tree": ["copies"]}  # any two robots are worth 2 / 3
@@ -88,10 +91,13 @@ def by_sizes(trees=(), forms=(), *, sets=PAIRS):
 
 
 def decided(folder, *documents):
+    """What both checkers say: they accept the same."""
     paths = [folder / f"{k}.json" for k in range(len(documents))]
     for path, found in zip(paths, documents, strict=True):
         path.write_text(json.dumps(found))
-    return decisions(paths)
+    codes = decisions(paths)
+    assert [code == 0 for code in codes] == [python_decision(path) == 0 for path in paths]
+    return codes
 
 
 def test_each_conclusion_proves_a_true_claim(tmp_path):
@@ -164,6 +170,65 @@ def test_copies_of_robots_inside(tmp_path):
     assert decided(tmp_path, document(by_duals(copies, sets=NOTHING), PATH, 1, 0)) == [0]
     assert decided(tmp_path, document(by_duals(copies, sets=NOTHING), PATH, 1, 0, claim=0.7)) == [1]
     assert decided(tmp_path, document(by_duals(copies, sets=NOTHING), PATH, 2, 0)) == [1]
+
+
+def limited(tree, robots=(0, 1, 2), size=2, lemma=("copies",)):
+    limits = [{"robots": list(robots), "size": size, "tree": list(lemma)}]
+    return by_duals(tree, sets=NOTHING) | {"limits": limits}
+
+
+def test_limits(tmp_path):
+    """Of two or three robots any two are worth 2 / 3: with at most one that sees, a group of all has two blinded."""
+    tree = [*BLINDED[:3], {"limit": 0}, *BLINDED[3:]]
+    for robots in ((0, 1, 2), (0, 1), (1, 2)):
+        lower = limited(tree, robots)
+        blinded = 2 if len(robots) == 3 else 1  # of those of the limit
+        codes = decided(tmp_path, *(document(lower, PATH, alpha_s, 0) for alpha_s in range(3)))
+        assert codes == [0 if alpha_s < blinded else 1 for alpha_s in range(3)]
+        assert decided(tmp_path, document(lower, PATH, 0, 0, claim=0.7)) == [1]
+
+
+def test_what_is_no_limit(tmp_path):
+    tree = [*BLINDED[:3], {"limit": 0}, *BLINDED[3:]]
+    for changes, code in (
+        ({}, 0),
+        ({"size": 1}, 1),
+        ({"size": 3, "lemma": ["worth"]}, 1),
+        ({"size": 3}, 1),
+        ({"lemma": ["budget"]}, 1),
+        ({"robots": (0,)}, 1),
+        ({"robots": ()}, 1),
+        ({"robots": (1, 0, 2)}, 2),
+        ({"robots": (0, 1, 3)}, 2),
+        ({"size": 4, "lemma": ["budget"]}, 1),
+    ):
+        found = decided(tmp_path, document(limited(tree, **changes), PATH, 1, 0))[0]
+        assert found == code, changes
+    for node in ({"limit": 1}, {"limit": -1}, {"limit": 0, "sense": 0}):
+        other = [*BLINDED[:3], node, *BLINDED[3:]]
+        assert decided(tmp_path, document(limited(other), PATH, 1, 0))[0] in (1, 2)
+    forced = {"conclusion": "forced", "sets": PAIRS, "limits": []}
+    assert decided(tmp_path, document(forced, TRIANGLE, 1, 0))[0] in (1, 2)
+    assert decided(tmp_path, document(by_duals() | {"limits": []}, PATH, 1, 0)) == [0]
+    tree_of_sets = limited(tree, lemma=[{"limit": 0}, "copies"])
+    assert decided(tmp_path, document(tree_of_sets, PATH, 1, 0)) == [1]
+
+
+def test_real_limits_are_decided_alike(tmp_path):
+    def documents():
+        for problem, plan, worst, part in small_proofs("cover", LIMITED):
+            base = certified(problem, tmp_path / "base.json")[1] | {"plan": [int(e) for e in plan], "lower": part}
+            claim = {"lower": worst * (1 - 2e-7), "upper": max(base["claim"]["upper"], worst)}
+            yield np.random.default_rng(54), base | {"claim": claim}
+
+    paths = []
+    for k, (_, written) in enumerate(documents()):
+        paths.append(tmp_path / f"limits{k}.json")
+        paths[-1].write_text(json.dumps(written))
+    assert decisions(paths) == [python_decision(path) for path in paths] == [0] * len(LIMITED)
+    found, seen, _ = sweep(tmp_path, documents(), 0.1, ("lower",))
+    assert not found
+    assert seen >= 100
 
 
 def test_links_say_nothing_about_sets_of_robots(tmp_path):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ratt_opt.certificates.verifier.reading import index, need, walk
+from ratt_opt.certificates.verifier.reading import array, fields, index, indices, need, walk
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Case", "Cases", "mask_of", "robots_of"]
 
-BRANCHES = ("sense", "inside", "sensing", "blinded")
+BRANCHES = ("sense", "inside", "sensing", "blinded", "limit")
 PLAIN = ("worth", "copies", "budget", "listed")
 """Leaves that are names; other nodes are records of a name and a number."""
 
@@ -79,14 +79,30 @@ class Cases:
             self.tied[i] |= 1 << j
             self.tied[j] |= 1 << i
         self.blinded = min(about.alpha_s, about.n - len(about.safe_robots))
+        self.limits: list[tuple[int, int]] = []
+        """Sets of robots, and the most of these that sense in a group worth less than the claim."""
 
-    def check_sets(self, size: int, tree: object) -> int:
+    def check_limits(self, given: object) -> int:
+        """Check that of each limit's robots any ``size`` are worth the claim; returns the number of leaves."""
+        leaves = 0
+        for limit in array("limits", given):
+            members, number, tree = fields("limit", limit, "robots size tree")
+            robots = indices("limit robots", members, self.about.n)
+            size = index("limit size", number, self.about.n + 2)
+            leaves += self.check_sets(size, tree, mask_of(robots))
+            self.limits.append((mask_of(robots), size - 1))
+        return leaves
+
+    def check_sets(self, size: int, tree: object, among: int | None = None) -> int:
         """Check that a tree shows that any ``size`` robots are worth the claim; returns the number of its leaves.
 
         Robots that are not in the set may be in its group, blinded: of the rules for groups none holds.
+
+        ``among`` : the robots of which this is said; all of them by default
         """
         everyone = self.everyone
-        root = Case(self.worth.nobody, everyone, 0, everyone, 0, everyone, size, size, 0, 0)
+        members = everyone if among is None else among
+        root = Case(self.worth.nobody, everyone, 0, members, 0, everyone, size, size, 0, 0)
         return self.check(tree, root, {"budget": self._close_too_few}, ("sense",))
 
     def groups(self, most: int, least: int = 0, blinded: int | None = None) -> Case:
@@ -125,6 +141,11 @@ class Cases:
             count = index("lower tree blinded", number, n + 1)
             yield replace(case, high=min(case.high, count - 1))
             yield replace(case, low=max(case.low, count))
+        elif name == "limit":
+            robots, most = self.limits[index("lower tree limit", number, len(self.limits))]
+            others = (case.sensing | case.may_sense) & ~robots
+            blinded = (case.inside & robots).bit_count() - most
+            yield replace(case, most=min(case.most, most + others.bit_count()), low=max(case.low, blinded))
         else:
             i = index(f"lower tree {name}", number, n)
             bit = 1 << i

@@ -150,18 +150,19 @@ class Duals:
 
 
 def check_duals(cases: Cases, size: int, *given: object) -> int:
-    """Check the proof: its duals, bounds and tree, and the partition if groups are listed; returns its leaves.
+    """Check the proof: its limits, duals, bounds and tree, and the partition if groups are listed; returns its leaves.
 
     ``size`` : any so many robots are worth the claim
     """
-    dual_values, bounds, tree, *partition = given
+    limits, dual_values, bounds, tree, *partition = given
+    leaves = cases.check_limits(limits)
     duals = Duals(cases, dual_values)
     duals.read_bounds(bounds)
     closing: dict[str, Close] = {"flow": duals.close_by_flow}
     if partition:
         closing["listed"] = duals.list_group
     need(bool(partition) == (duals.slack >= 0), "lower proof: whether duals claim more than the budgets is wrong")
-    leaves = cases.check(tree, cases.groups(min(size - 1, cases.about.n)), closing)
+    leaves += cases.check(tree, cases.groups(min(size - 1, cases.about.n)), closing)
     for groups in partition:
         check_partition(duals, groups)
     return leaves

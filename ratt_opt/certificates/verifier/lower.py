@@ -22,6 +22,8 @@ __all__ = ["ENUMERATED", "check_lower"]
 
 ENUMERATED = "enumerated"
 """The conclusion that says that the outcomes were enumerated in floating point: no proof."""
+NO_LIMITS: dict[str, list[object]] = {"limits": []}
+"""A field that a proof may leave out."""
 
 
 def check_lower(about: Statement, part: Any, lower: fmpq) -> int:
@@ -36,7 +38,8 @@ def check_lower(about: Statement, part: Any, lower: fmpq) -> int:
     known = isinstance(conclusion, str) and conclusion in CONCLUSIONS
     need(known, f"lower proof: the conclusion must be {', '.join(CONCLUSIONS)} or {ENUMERATED}")
     names, check = CONCLUSIONS[str(conclusion)]
-    _, sets, *given = fields("lower proof", part, f"conclusion sets{names}")
+    whole = NO_LIMITS | part if NO_LIMITS.keys() <= set(names.split()) else part
+    _, sets, *given = fields("lower proof", whole, f"conclusion sets{names}")
     cases = Cases(about, Worth(about, lower))
     number, tree = fields("sets", sets, "size tree")
     size = index("sets size", number, about.n + 2)
@@ -68,8 +71,8 @@ def is_forced(n: int, alpha_s: int, alpha_c: int, size: int) -> bool:
 
 CONCLUSIONS: dict[str, tuple[str, Callable[..., int]]] = {
     "forced": ("", _check_forced),
-    "duals": (" duals bounds tree", check_duals),
-    "cover": (" duals bounds tree partition", check_duals),
+    "duals": (" limits duals bounds tree", check_duals),
+    "cover": (" limits duals bounds tree partition", check_duals),
     "sizes": (" duals forms bounds trees", check_sizes),
 }
 """By name, the fields that a proof has beside its lemma on sets, and what checks them."""

@@ -9,7 +9,7 @@
 #include "team.h"
 
 enum { FINISHED, PAUSED, FULL, OPEN };
-enum { SENSE, INSIDE, SENSING, BLINDED_ARE, WORTH, COPIES, BUDGET, FLOW, LISTED }; /* what is written of a node, with a number */
+enum { SENSE, INSIDE, SENSING, BLINDED_ARE, LIMIT, WORTH, COPIES, BUDGET, FLOW, LISTED }; /* what is written of a node, with a number */
 enum { ROUNDS = 8 };             /* of multipliers at a case */
 enum { TRIED = 64 };             /* kept flows, those that closed a case last */
 /* Robots valued at a case, for each robot, to find how many are blinded, and to show it; the latter in one group, too. */
@@ -162,6 +162,45 @@ static int least_blinded(const Proof *p, const Node *node) {
     return need > node->low ? need : node->low;
 }
 
+/* Blinded robots of the case's groups, at least, as a limit says. */
+static int blinded_by(const Proof *p, const Node *node, int64_t limit) {
+    const int8_t *limited = p->out->limited + limit * p->robots;
+    int inside = 0;
+    for (int i = 0; i < p->robots; i++) inside += limited[i] && IS_INSIDE(node->state[i]);
+    return inside - (int)p->out->most[limit];
+}
+
+/* Robots of the case's groups that sense, at most, as a limit says. */
+static int sensing_by(const Proof *p, const Node *node, int64_t limit) {
+    const int8_t *limited = p->out->limited + limit * p->robots;
+    int others = 0;
+    for (int i = 0; i < p->robots; i++) others += !limited[i] && (node->state[i] & SENSES);
+    return others + (int)p->out->most[limit];
+}
+
+/* A limit that says that so many robots are blinded; if it can be, one that the tree has already. -1 if none does. */
+static int64_t limit_for(const Proof *p, const Node *node, int blinded) {
+    int64_t best = -1;
+    for (int64_t k = 0; k < p->out->n_limits; k++)
+        if ((best < 0 || p->out->uses[k] > p->out->uses[best]) && blinded_by(p, node, k) >= blinded) best = k;
+    return best;
+}
+
+/* Blinded robots of the case's groups, at least, as far as is written or a limit says. */
+static int known_blinded(const Proof *p, const Node *node) {
+    int blinded = least_blinded(p, node);
+    while (limit_for(p, node, blinded + 1) >= 0) blinded++;
+    return blinded;
+}
+
+static void write_limit(Proof *p, Node *node, int64_t limit) {
+    int most = sensing_by(p, node, limit), low = blinded_by(p, node, limit);
+    write_node(p, LIMIT, limit);
+    p->out->uses[limit]++;
+    if (most < node->most) node->most = most;
+    if (low > node->low) node->low = low;
+}
+
 /* Whether no group of the case is within the budgets. */
 static int is_beyond(Proof *p, const Node *node) {
     const Pricing *q = &p->s->q;
@@ -260,13 +299,18 @@ static int write_inside(Proof *p, const Node *node, int size, int64_t effort) {
 /* Write that at least `blinded` robots are blinded, if that is not written already; 0 if it is not shown. */
 static int write_blinded(Proof *p, Node *node, int blinded, int64_t effort) {
     if (blinded <= least_blinded(p, node)) return 1;
+    int64_t limit = limit_for(p, node, blinded);
+    if (limit >= 0) {
+        write_limit(p, node, limit);
+        return 1;
+    }
     write_node(p, BLINDED_ARE, blinded);
     if (write_inside(p, node, count_unsure(p, node) - blinded + 1, effort)) {
         node->low = blinded;
         return 1;
     }
     p->out->count--;
-    node->need = least_blinded(p, node);
+    node->need = known_blinded(p, node);
     return 0;
 }
 
@@ -281,13 +325,28 @@ static int write_flow(Proof *p, Node *node, int64_t number, int64_t effort) {
 
 /* Find robots that must be blinded, without writing it yet. 1: more than may be, and all of it is written. */
 static int find_blinded(Proof *p, Node *node, int64_t effort, int64_t written_effort) {
-    int unsure = count_unsure(p, node), most = (int)p->s->q.n_blinded, written = least_blinded(p, node);
-    if (node->need < written) node->need = written;
+    int unsure = count_unsure(p, node), most = (int)p->s->q.n_blinded, known = known_blinded(p, node);
+    if (known > most && write_blinded(p, node, most + 1, 0)) {
+        write_node(p, BUDGET, 0);
+        return 1;
+    }
+    if (node->need < known) node->need = known;
     while (node->need <= most && node->need < unsure && !may_be_below(p->s, node, node->need, effort)) node->need++;
     if (node->need <= most) return 0;
     if (write_inside(p, node, unsure - most, written_effort)) return 1;
-    node->need = written;
+    node->need = known;
     return 0;
+}
+
+/* Write the limit that lets the fewest robots sense, if they are fewer than is known. */
+static void limit_sensing(Proof *p, Node *node) {
+    int64_t best = -1;
+    int fewest = node->most;
+    for (int64_t k = 0; k < p->out->n_limits; k++) {
+        int most = sensing_by(p, node, k);
+        if (most < fewest) fewest = most, best = k;
+    }
+    if (best >= 0) write_limit(p, node, best);
 }
 
 /* Robots that would be worth the threshold do not sense, and no more sense than copies let. */
@@ -305,6 +364,7 @@ static void narrow(Proof *p, Node *node) {
     }
     node->found = 0;
     if (node->most > sure + open) node->most = sure + open;
+    limit_sensing(p, node);
     int told = node->most;
     while (node->most > sure && copies_are_enough(p, node, node->most - sure)) node->most--;
     if (node->most < told) write_node(p, SENSING, node->most + 1), write_node(p, COPIES, 0);
@@ -404,14 +464,17 @@ static int expand(Proof *p) {
     return PAUSED;
 }
 
-/* Write a tree that any `size` robots are worth the threshold, on from `*depth`, or from its root if that is -1: 0 it is finished,
-   1 paused once so many robots were valued, 2 too large for the arrays, 3 some set is worth less. */
-EXPORTED int grow_sets_tree(Search *s, GroupTree *out, Row *rows, int32_t *depth, int64_t size, int64_t effort) {
+/* Write a tree that any `size` robots of those in `among` (robots) are worth the threshold, on from `*depth`, or from its root if
+   that is -1: 0 it is finished, 1 paused once so many robots were valued, 2 too large for the arrays, 3 some set is worth less. */
+EXPORTED int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row *rows, int32_t *depth, int64_t size,
+                            int64_t effort) {
     Proof p = {.s = s, .robots = s->robots, .out = out};
     if (*depth < 0) {
         memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
-        for (int i = 0; i < s->robots; i++) s->order[i] = i;
-        open_row(&p, rows, *depth = 0, s->robots, (int)size);
+        int count = 0;
+        for (int i = 0; i < s->robots; i++)
+            if (among[i]) s->order[count++] = i;
+        open_row(&p, rows, *depth = 0, count, (int)size);
     }
     return write_sets(&p, rows, depth, effort);
 }
@@ -434,7 +497,7 @@ EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
     }
     int64_t stop = s->visited + cases;
     while (code == PAUSED && s->depth > 0 && s->visited < stop)
-        code = out->count + 4 * (int64_t)n + 8 > out->capacity ? FULL : expand(&p);
+        code = out->count + 4 * (int64_t)n + 12 > out->capacity ? FULL : expand(&p);
     free(p.gains), free(p.seen), free(p.queue), free(p.rows);
     return code == PAUSED && s->depth == 0 ? FINISHED : code;
 }

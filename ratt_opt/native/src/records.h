@@ -145,6 +145,9 @@ typedef struct {
     int64_t *flows, *recent;             /* (most_flows, 2 + arcs) prices of blinding and of cuts, flows; (most_flows) */
     int8_t *listed;                      /* (most_listed, robots) who is inside */
     int64_t *needs;                      /* (most_listed) blinded robots, at least */
+    int64_t n_limits;
+    int8_t *limited;                     /* (n_limits, robots) whose robots */
+    int64_t *most, *uses;                /* (n_limits) how many of them sense at most; nodes that say so */
 } GroupTree;
 
 /* An open search. */

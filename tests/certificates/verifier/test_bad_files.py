@@ -155,6 +155,29 @@ def test_conclusions_of_other_kinds_keep_their_rules(tmp_path, good):
         assert any(part in message for part in text.split("|")), message
 
 
+def test_limits_keep_their_rules(tmp_path, good):
+    limit, lower = {"robots": [0, 1], "size": 2, "tree": ["budget"]}, good["lower"]
+    duals = {"link": 0, "robots": [1, 0, 0], "blinded": 0}
+    proof = {"conclusion": "duals", "sets": {"size": 4, "tree": ["budget"]}, "duals": duals, "bounds": []}
+    tree = [{"limit": 0}, "budget"]
+    for changes, kind, text in (
+        (lower | {"limits": []}, FileFormatError, "lower proof must be a record of conclusion, sets; got"),
+        ({"limits": 0}, FileFormatError, "limits must be a list"),
+        ({"limits": [limit | {"robots": [1, 0]}]}, FileFormatError, "limit robots must be strictly ascending"),
+        ({"limits": [limit | {"robots": [3]}]}, FileFormatError, "limit robots must be an integer in [0, 2]"),
+        ({"limits": [limit | {"size": -1}]}, FileFormatError, "limit size must be an integer in [0, 4]"),
+        ({"limits": [limit | {"most": 1}]}, FileFormatError, "limit must be a record of robots, size, tree"),
+        ({"limits": [limit]}, ProofError, "may have robots enough"),
+        ({"limits": [limit | {"tree": [{"sense": 2}, "budget", "budget"]}]}, ProofError, "is decided twice"),
+        ({"limits": [limit | {"tree": tree}]}, ProofError, "is none of this proof"),
+        ({"limits": []}, FileFormatError, "lower tree limit must be an integer in"),
+        ({}, FileFormatError, "lower tree limit must be an integer in"),
+    ):
+        part = changes if "conclusion" in changes else {**proof, "tree": tree, **changes}
+        message = fault({**good, "lower": part, "claim": good["claim"] | {"upper": 1e9}}, tmp_path, kind)
+        assert text in message, message
+
+
 def whole(out):
     """A tree that lists every group of three robots."""
     robot = len(out)

@@ -13,12 +13,14 @@ import numpy as np
 import pytest
 from flint import fmpq
 
-from ratt_opt import Problem, ProofError, TraceObjective
+from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective
 from ratt_opt.certificates.verifier.cases import Cases, robots_of
 from ratt_opt.certificates.verifier.duals import Duals, check_partition
 from ratt_opt.certificates.verifier.worth import Worth
 from tests.certificates.engine import statement
 from tests.strategies import information_data
+
+BRANCHES = ("sense", "inside", "inside", "sensing", "blinded")
 
 
 def subsets(robots):
@@ -58,14 +60,25 @@ class Drawn:
     def links_of(self, group):
         return sum(len(group & set(link)) == 1 for link in self.threat.graph.links)
 
-    def descend(self, case, groups, steps):
+    def draw_limit(self):
+        """Some robots, and the most of these that are worth less than the claim, by definition."""
+        robots = [i for i in range(self.n) if self.rng.uniform() < 0.7]
+        below = [len(some) for some in subsets(robots) if self.problem.objective(sorted(some)) < self.claim]
+        self.cases.limits.append((sum(1 << i for i in robots), max(below, default=-1)))
+
+    def descend(self, case, groups, steps, names=BRANCHES):
         """Answer some branches at random: the case, and the groups that agree."""
         for _ in range(steps):
-            name = str(self.rng.choice(["sense", "inside", "inside", "sensing", "blinded"]))
+            name = str(self.rng.choice(names))
             number = int(self.rng.integers(self.n if name in ("sense", "inside") else self.n + 1))
+            if name == "limit":
+                number = int(self.rng.integers(len(self.cases.limits)))
             try:
                 halves = list(self.cases._halves(name, number, case))
             except ProofError:  # it is decided already
+                continue
+            if name == "limit":
+                (case,) = halves
                 continue
             answer = int(self.rng.integers(2))
             agreeing = {
@@ -116,6 +129,36 @@ def test_leaves_by_definition(part):
     assert min(accepted.values()) > 0
 
 
+@pytest.mark.parametrize("part", range(4))
+def test_limits_by_definition(part):
+    """Groups that are worth less than the claim stay in a case that limits narrow."""
+    accepted = dict.fromkeys(("worth", "copies", "budget", "flow"), 0)
+    narrower = 0
+    for draw in range(600):
+        if draw % 60 == 0:
+            drawn = Drawn(500 + 10 * part + draw // 60)
+            for _ in range(3):
+                drawn.draw_limit()
+            below = [pair for pair in drawn.groups if value(drawn, *pair) < drawn.claim * (1 - 1e-9)]
+        names = (*BRANCHES, "limit", "limit")
+        case, groups = drawn.descend(drawn.cases.groups(drawn.n), below, int(drawn.rng.integers(0, 9)), names)
+        narrower += case.most < drawn.n and case.low > 0
+        for group, blinded in groups:
+            assert case.least <= len(group - blinded) <= case.most
+            assert case.low <= len(blinded) <= case.high
+        duals = random_duals(drawn)
+        for name in ("worth", "copies", "budget"):
+            if drawn.accepts(name, case):
+                assert not groups
+                accepted[name] += 1
+        if drawn.accepts("flow", case, 0, {"flow": duals.close_by_flow}):
+            assert all(cost(drawn, duals, *pair) > max(duals.slack, -1) for pair in groups)
+            accepted["flow"] += 1
+        assert_listed(drawn, duals, case, groups)
+    assert narrower > 0
+    assert min(accepted.values()) > 0
+
+
 def random_duals(drawn):
     rng, links = drawn.rng, len(drawn.about.links)
     link = int(rng.integers(0, 9))
@@ -160,19 +203,26 @@ def random_tree(drawn, decided, known, size):
 @pytest.mark.parametrize("part", range(4))
 def test_sets_of_a_size_by_definition(part):
     accepted = 0
-    for draw in range(4000):
-        if draw % 200 == 0:
-            drawn = Drawn(20 * part + draw // 200)
+    for draw in range(6000):
+        if draw % 300 == 0:
+            drawn = Drawn(20 * part + draw // 300)
         size = int(drawn.rng.integers(0, drawn.n + 1))
+        among = [i for i in range(drawn.n) if draw % 2 or drawn.rng.uniform() < 0.7]
+        others = set(range(drawn.n)) - set(among) if draw % 4 else set()
+        tree = random_tree(drawn, others, 0, size)
         try:
-            drawn.cases.check_sets(size, random_tree(drawn, set(), 0, size))
-        except ProofError:
+            if draw % 2:
+                drawn.cases.check_sets(size, tree)
+            else:
+                drawn.cases.check_limits([{"robots": among, "size": size, "tree": tree}])
+        except (ProofError, FileFormatError):
             continue
         accepted += 1
-        sets = combinations(range(drawn.n), size)
+        assert draw % 2 or drawn.cases.limits[-1] == (sum(1 << i for i in among), size - 1)
+        sets = combinations(among, size)
         assert all(drawn.problem.objective(robots) >= drawn.claim * (1 - 1e-9) for robots in sets)
     assert accepted >= 100
-    for node in ("inside", "sensing", "blinded", "flow"):
+    for node in ("inside", "sensing", "blinded", "limit", "flow"):
         with pytest.raises(ProofError, match="none of this proof"):
             drawn.cases.check_sets(1, [{node: 0}])
 

@@ -13,14 +13,14 @@ import pytest
 from flint import fmpq
 
 from ratt_opt import ProofError
-from ratt_opt.certificates.verifier.cases import Cases
+from ratt_opt.certificates.verifier.cases import Cases, mask_of
 from ratt_opt.certificates.verifier.duals import Duals
 from ratt_opt.certificates.verifier.worth import Worth
 from tests.certificates.engine import check, drawn, statement
 
 LARGEST = 120
 """Nodes of a forged tree."""
-FLOWS = 6
+FLOWS, LIMITS = 6, 2
 
 
 class Forger:
@@ -47,6 +47,9 @@ class Forger:
             flow = rng.integers(-(link + cut), link + cut + 1, links).tolist()
             bounds.append({"blinding": int(rng.choice([0, rng.integers(0, 40)])), "cut": cut, "flow": flow})
         bounds.append({"blinding": 0, "cut": 0, "flow": [0] * links})
+        self.cases.limits.clear()
+        limits = [limit for limit in (self._limit() for _ in range(LIMITS)) if limit is not None]
+        self.cases.check_limits(limits)
         self.duals = Duals(self.cases, given)
         self.duals.read_bounds(bounds)
         self.closing = {"flow": self.duals.close_by_flow}
@@ -55,31 +58,38 @@ class Forger:
         tree = []
         if not self._close(self.cases.groups(min(size - 1, self.n)), tree):
             return None
-        proof = {"sets": sets, "duals": given, "bounds": bounds, "tree": tree}
+        proof = {"sets": sets, "duals": given, "bounds": bounds, "tree": tree, **({"limits": limits} if limits else {})}
         if self.duals.slack < 0:
             return {"conclusion": "duals", **proof}
         partition = self._partition()
         return None if partition is None else {"conclusion": "cover", **proof, "partition": partition}
 
-    def _sets(self, size):
-        """A tree over sets of a size, robots in turn; ``None`` if some are worth less."""
-        for leaf in ("worth", "copies", "budget"):
-            if self._is_closed_set(size, [leaf]):
-                return [leaf]
-        tree = self._every_set(size, 0, 0)
-        return tree if self._is_closed_set(size, tree) else None
+    def _limit(self):
+        """The least size that the verifier takes of some robots, as a limit; ``None`` if it takes none."""
+        robots = [i for i in range(self.n) if self.rng.uniform() < 0.7]
+        for size in range(len(robots) + 1):
+            tree = self._sets(size, robots)
+            if tree is not None:
+                return {"robots": robots, "size": size, "tree": tree}
+        return None
 
-    def _every_set(self, size, robot, known):
+    def _sets(self, size, among=None):
+        """A tree over sets of a size, robots in turn; ``None`` if some are worth less."""
+        robots = list(range(self.n)) if among is None else among
+        trees = (["worth"], ["copies"], ["budget"], self._every_set(size, robots, 0))
+        return next((tree for tree in trees if self._is_closed_set(size, tree, robots)), None)
+
+    def _every_set(self, size, robots, known):
         if known == size:
             return ["worth"]
-        if self.n - robot + known < size:
+        if len(robots) + known < size:
             return ["budget"]
-        halves = self._every_set(size, robot + 1, known + 1), self._every_set(size, robot + 1, known)
-        return [{"sense": robot}, *halves[0], *halves[1]]
+        robot, *rest = robots
+        return [{"sense": robot}, *self._every_set(size, rest, known + 1), *self._every_set(size, rest, known)]
 
-    def _is_closed_set(self, size, tree):
+    def _is_closed_set(self, size, tree, robots):
         try:
-            self.cases.check_sets(size, tree)
+            self.cases.check_sets(size, tree, mask_of(robots))
         except ProofError:
             return False
         return True
@@ -102,8 +112,9 @@ class Forger:
                 return True
         if len(tree) > LARGEST:
             return False
-        for name in self.rng.permutation(["inside", "inside", "sense", "sensing", "blinded"]):
-            numbers = self.rng.permutation(self.n + (name in ("sensing", "blinded")))
+        for name in self.rng.permutation(["limit", "inside", "inside", "sense", "sensing", "blinded"]):
+            count = len(self.cases.limits) if name == "limit" else self.n + (name in ("sensing", "blinded"))
+            numbers = self.rng.permutation(count)
             for number in map(int, numbers):
                 try:
                     halves = list(self.cases._halves(str(name), number, case))
@@ -157,12 +168,14 @@ def accepted(forger, part):
 
 def test_true_claims_are_forged_and_accepted():
     """What the forger thinks that it closed is accepted, but for conclusions of which it asked nothing before."""
-    count = 0
+    count = limited = 0
     for forger, part in forgeries(range(20), 6, 0.7):
         taken = accepted(forger, part)
         assert taken or part is None or part["conclusion"] == "forced"
         count += taken
+        limited += taken and any("limit" in node for node in part.get("tree", []))
     assert count >= 30
+    assert limited >= 5
 
 
 @pytest.mark.parametrize("factor", [1 + 1e-6, 1.01, 1.2])
