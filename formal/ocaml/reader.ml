@@ -247,12 +247,12 @@ let rec case_node dear next depth =
       let none () = raise (Fault ("lower proof: a node is none of this proof: " ^ name)) in
       match name with
       | "sense" -> halves (fun (a, b) -> Sense (k, a, b))
+      | "limit" -> Limited (k, case_node dear next (depth + 1))
       | _ when name = dear -> Dear k
       | _ when dear = sets_only -> none ()
       | "inside" -> halves (fun (a, b) -> Inside (k, a, b))
       | "sensing" -> halves (fun (a, b) -> Sensing (k, a, b))
       | "blinded" -> halves (fun (a, b) -> Blinding (k, a, b))
-      | "limit" -> Limited (k, case_node dear next (depth + 1))
       | _ -> none ())
   | _ -> raise (Fault "lower proof: a node must be a name, or a record of one")
 

@@ -11,7 +11,7 @@ Import Order.Theory GRing.Theory Num.Theory.
 
 (** Any [set_size] robots that sense in one group are worth the claim. *)
 Record sets_lemma := Sets { set_size : nat; set_tree : case_tree }.
-(** A limit: the same of those robots that are [limited]. *)
+(** A limit: the same of those robots that are [limited]. Limits may name those before them. *)
 Record limit := Limit { limited : seq bool; limit_lemma : sets_lemma }.
 Record group_tree := GroupTree { dual : prices; bounds : seq flow_bound; limits : seq limit; groups : case_tree }.
 
@@ -30,11 +30,8 @@ Local Notation n := (robots w).
 Definition set_case (among : seq bool) (size : nat) : case S :=
   let k := Z.of_nat size in
   Case start 0 k k Z0 Z0 [seq if nth false among i then Options true false true else only_out | i <- iota 0 n].
-Definition check_sets_among (among : seq bool) (l : sets_lemma) : bool :=
-  (set_size l <= n.+1)%N &&
-  if check_cases add worth average_worth (fun _ _ => None) (@too_few S) (fun _ _ => false)
-       (fun _ => None : option (option unit)) (set_tree l) (set_case among (set_size l)) [::] is Some _ then true else false.
-Definition check_sets : sets_lemma -> bool := check_sets_among (nseq n true).
+(** Fewer may sense than must, or more must than may. *)
+Definition no_set (c : case S) : bool := too_few c || Z.ltb (most c) (least c).
 
 (** What a limit says of a case: so many robots sense at most, and so many are blinded at least. *)
 Definition limit_most (l : limit) : Z := Z.pred (Z.of_nat (set_size (limit_lemma l))).
@@ -48,6 +45,14 @@ Definition apply_limit (l : limit) (c : case S) : case S :=
 Definition narrow (ls : seq limit) (k : nat) (c : case S) : option (case S) :=
   if drop k ls is l :: _ then Some (apply_limit l c) else None.
 
+Definition check_sets_among (ls : seq limit) (among : seq bool) (l : sets_lemma) : bool :=
+  (set_size l <= n.+1)%N &&
+  if check_cases add worth average_worth (narrow ls) no_set (fun _ _ => false)
+       (fun _ => None : option (option unit)) (set_tree l) (set_case among (set_size l)) [::] is Some _ then true else false.
+Definition check_sets : sets_lemma -> bool := check_sets_among [::] (nseq n true).
+Fixpoint check_limits (known ls : seq limit) : bool :=
+  if ls is l :: ls' then check_sets_among known (limited l) (limit_lemma l) && check_limits (rcons known l) ls' else true.
+
 Variables (size_k : nat) (near tied : seq (seq bool)).
 Definition start_case : case S :=
   Case start 0 Z0 (Z.pred (Z.of_nat size_k)) Z0 (Z.of_nat (spare w)) [seq Options true (i \notin kept_robots w) true | i <- iota 0 n].
@@ -55,7 +60,7 @@ Definition start_case : case S :=
 Variables (t : group_tree).
 Definition tree_ok : bool :=
   [&& prices_ok w (dual t), all (bound_ok w (dual t) near tied) (bounds t)
-    & all (fun l => check_sets_among (limited l) (limit_lemma l)) (limits t)].
+    & check_limits [::] (limits t)].
 Definition is_dear (limit : Z) (k : nat) (c : case S) : bool :=
   if drop k (bounds t) is b :: _ then Z.ltb limit (flow_value w (dual t) near b c) else false.
 
@@ -168,10 +173,33 @@ Local Notation below := (fun i => (i < robots w)%N).
 Hypotheses (worthP : worth_test start add phi p lower worth) (averageP : average_test start add phi p lower average_worth).
 Local Notation check_sets_among := (check_sets_among w start add worth average_worth).
 Local Notation check_sets := (check_sets w start add worth average_worth).
+Local Notation check_limits := (check_limits w start add worth average_worth).
 
-Theorem check_sets_amongP among l (V : {set robot}) : check_sets_among among l ->
-  (set_size l <= #|[set i in V | nth false among i]|)%N -> lower <= phi (contributed p V).
+(** Any so many of the robots are worth the claim; and this of all limits of a list. *)
+Definition holds_of (among : seq bool) (size : nat) : Prop := forall V : {set robot},
+  (size <= #|[set i in V | nth false among i]|)%N -> lower <= phi (contributed p V).
+Definition all_hold (ls : seq limit) : Prop := forall k l ls', drop k ls = l :: ls' -> holds_of (limited l) (set_size (limit_lemma l)).
+
+Lemma apply_limitP (C B : {set robot}) l c : (#|[set i in C :\: B | nth false (limited l) i]| < set_size (limit_lemma l))%N ->
+  stands start add C B c -> stands start add C B (apply_limit w l c).
 Proof.
+set R := nth false (limited l) => few st; have := limited_sensing st R; have := limited_blinded st R.
+case: (st) => ? ? ? [s1 s2] [b1 b2] le1 le2; split=> //=; rewrite /limit_most /count_robots -/R.
+all: move: few le1 le2 s1 s2 b1 b2; clear.
+all: by move: #|_| (count _ _) (count _ _) (sensing_size _ _) (blinded_size _ _) => few others within s b; split; lia.
+Qed.
+
+Lemma narrow_stands (C B V : {set robot}) ls k c c' : C :\: B \subset V -> all_hold ls -> ~~ (lower <= phi (contributed p V)) ->
+  stands start add C B c -> narrow w ls k c = Some c' -> stands start add C B c'.
+Proof.
+move=> sub hold low st; rewrite /narrow; case el: (drop k ls) => [//|l ls'] [<-]; apply: apply_limitP => //.
+rewrite ltnNge; apply: contra low => many; apply: (hold _ _ _ el); apply: leq_trans many _.
+by apply: subset_leq_card; apply/subsetP => i; rewrite !inE => /andP[h ->]; rewrite andbT; apply: (subsetP sub); rewrite !inE.
+Qed.
+
+Theorem check_sets_amongP ls among l : all_hold ls -> check_sets_among ls among l -> holds_of among (set_size l).
+Proof.
+move=> hold h V; move: h; have [//|low] := boolP (lower <= phi (contributed p V)).
 rewrite /GroupProofs.check_sets_among; set k := set_size l => /andP[_]; case e: (check_cases _ _ _ _ _ _ _ _ _ _) => [f|//] _ le.
 have [C CV cC] := part_of_size le.
 have inC (i : robot) : i \in C -> (i \in V) && nth false among i by move/(subsetP CV); rewrite inE.
@@ -188,18 +216,30 @@ have st : stands start add C set0 (set_case w start among k).
   - by exists [::]; split=> // i; rewrite first_options; case: ifP => //; case: ifP.
   move=> i; rewrite /may_be first_options ltn_ord !inE; case: ifP => [/inC /andP[_ ->] //|_].
   by case: ifP.
-have budget (c : case S) : stands start add C set0 c -> ~~ too_few c by apply: not_too_few.
-have no_limit (i : nat) (c c' : case S) : stands start add C set0 c -> None = Some c' -> stands start add C set0 c' by [].
+have budget (c : case S) : stands start add C set0 c -> ~~ no_set c.
+  by move=> stc; rewrite /no_set negb_or (not_too_few stc); have := not_impossible stc; rewrite /impossible !negb_or => /and5P[].
+have limit_ok (i : nat) (c c' : case S) : stands start add C set0 c -> narrow w ls i c = Some c' -> stands start add C set0 c'.
+  exact: (narrow_stands sub hold low).
 have no_dear (i : nat) (c : case S) : stands start add C set0 c -> false -> False by [].
 have no_list (c : case S) (g : option unit) : stands start add C set0 c -> None = Some g ->
   False \/ exists2 h, g = Some h & False by [].
-by have [//|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub no_limit budget
-  no_dear no_list e st.
+by have [le'|[//|[g _ []]]] := check_casesP (G := unit_eqType) (fits := fun _ => False) worthP averageP sub limit_ok budget
+  no_dear no_list e st; rewrite le' in low.
+Qed.
+
+Lemma check_limitsP known ls : all_hold known -> check_limits known ls -> all_hold (known ++ ls).
+Proof.
+elim: ls known => [|l ls IH] known hold; first by rewrite cats0.
+move=> /= /andP[h rest]; rewrite -cat_rcons; apply: IH rest => k l' ls'.
+have new := check_sets_amongP hold h; rewrite -cats1 drop_cat; case: ltnP => _; last first.
+  by case: (k - size known)%N => [|j] //= [<- _].
+by case ek: (drop k known) => [|x xs] /= [<- _] //; exact: (hold _ _ _ ek).
 Qed.
 
 Theorem check_setsP l (V : {set robot}) : check_sets l -> (set_size l <= #|V|)%N -> lower <= phi (contributed p V).
 Proof.
-move=> h le; apply: check_sets_amongP h _; apply: leq_trans le _; apply: subset_leq_card; apply/subsetP => i iV.
+move=> h le; have none : all_hold [::] by [].
+apply: (check_sets_amongP none h); apply: leq_trans le _; apply: subset_leq_card; apply/subsetP => i iV.
 by rewrite inE iV nth_nseq ltn_ord.
 Qed.
 
@@ -260,16 +300,9 @@ Qed.
 
 Lemma narrowP k c c' : stands start add C B c -> narrow w (limits t) k c = Some c' -> stands start add C B c'.
 Proof.
-move=> st; rewrite /narrow; case el: (drop k (limits t)) => [//|l ls] [<-].
-have /(check_sets_amongP (V := C :\: B)) lemma : check_sets_among (limited l) (limit_lemma l).
-  by case/and3P: tree_good => _ _; rewrite -(cat_take_drop k (limits t)) all_cat el => /and3P[].
-set R := nth false (limited l) in lemma *.
-have few : (#|[set i in C :\: B | R i]| < set_size (limit_lemma l))%N.
-  by rewrite ltnNge; apply: contra (poor r); rewrite sees_part; apply: lemma.
-have := limited_sensing st R; have := limited_blinded st R.
-case: (st) => ? ? ? [s1 s2] [b1 b2] le1 le2; split=> //=; rewrite /limit_most /count_robots -/R.
-all: move: few le1 le2 s1 s2 b1 b2; clear.
-all: by move: #|_| (count _ _) (count _ _) (sensing_size _ _) (blinded_size _ _) => few others within s b; split; lia.
+have none : all_hold [::] by [].
+apply: (narrow_stands (V := C :\: B)) => //; first by case/and3P: tree_good => _ _ /(check_limitsP none).
+by rewrite -sees_part; apply: poor.
 Qed.
 
 Lemma no_budgetP c : stands start add C B c -> ~~ beyond_budgets w near tied c.

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.plan_sets import PlanSets
     from ratt_opt.graph.threat import Threat
 
+    Lemmas = tuple[GroupTree, dict[str, Any]]
+    """A tree of groups, and the fields of the lemmas that it needs."""
+
 __all__ = ["cover_proof"]
 
 UNIT = 1 << 14
@@ -42,8 +45,8 @@ MOST_PARTITIONS = 200_000
 """Nodes of the search of partitions."""
 SHARE_OF_SHORTER = 0.3
 """Of the seconds left, to look for a proof without limits."""
-LARGEST_LIMITS = 400_000
-"""Most nodes of all proofs of limits, as the verifier reads files of two million numbers."""
+LARGEST_PROOF = 1_500_000
+"""Most nodes and numbers of flows; the verifier reads files of two million."""
 
 
 def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
@@ -55,14 +58,11 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     """
     threat, plan = sets.problem.threat, sets.plan
     duals = duals_of_all_groups(plan, sets.threshold) or _searched_duals(plan, sets)
-    lemma, limits = _lemma(sets, duals.limits, max_nodes)
     robots, blinded = np.floor(duals.robots * UNIT).astype(np.int64), int(np.ceil(duals.blinded * UNIT))
-    question = Question(sets.threshold, lemma["size"] - 1, robots, blinded, 0, UNIT)
+    question = Question(sets.threshold, plan.robots, robots, blinded, 0, UNIT)
     slack = 2 * threat.alpha_c * UNIT - question.claim(threat.n_blinded)
-    question = replace(question, limit=max(slack, -1))
-    tree, proofs = _shorter(sets, question, *_limited_tree(sets, question, limits, max_nodes))
-    record: dict[str, Any] = {"sets": lemma, **({"limits": proofs} if proofs else {})}
-    record["duals"] = {"link": UNIT, "robots": question.duals.tolist(), "blinded": question.blinding}
+    tree, lemmas = _shorter(sets, replace(question, limit=max(slack, -1)), duals.limits, max_nodes)
+    record = {**lemmas, "duals": {"link": UNIT, "robots": question.duals.tolist(), "blinded": question.blinding}}
     record |= {"bounds": tree.bounds, "tree": tree.nodes}
     if slack < 0:
         return {"conclusion": "duals", **record}
@@ -85,60 +85,55 @@ def _searched_duals(plan: Plan, sets: PlanSets) -> LinkDuals:
     return LinkDuals(2 * answer.prices.robot, 2 * answer.prices.blinded, [])  # prices are about half links
 
 
-def _lemma(sets: PlanSets, limits: list[Limit], max_nodes: int) -> tuple[dict[str, Any], list[Limit]]:
-    """The smallest size that is known of which all sets are worth the threshold, with its proof, and the other limits.
+def _shorter(sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int) -> Lemmas:
+    """The tree of groups with limits, or without: a limit may be about more robots than its cases, and so its proof.
 
     Raises
     ------
-    NotClosedError : no such proof is small enough.
+    NotClosedError : neither way closes or lists all groups, or both are too large.
     """
+    if not limits:
+        return _without_limits(sets, question, limits, max_nodes)
+    try:
+        tree, lemmas = _with_limits(sets, question, limits, max_nodes)
+    except NotClosedError:
+        return _without_limits(sets, question, limits, max_nodes)
+    nodes = len(tree.nodes) + sum(1 + len(limit["tree"]) for limit in lemmas["limits"])
+    with suppress(NotClosedError, UndecidedError), limited(SHARE_OF_SHORTER * seconds_left()):
+        plain, lemma = _without_limits(sets, question, limits, min(nodes, max_nodes))
+        if len(plain.nodes) + len(lemma["sets"]["tree"]) <= nodes:
+            return plain, lemma
+    return tree, lemmas
+
+
+def _without_limits(sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int) -> Lemmas:
+    """By one lemma, with the smallest size that is known of which all sets are worth the threshold."""
     everyone = (1 << sets.plan.robots) - 1
-    of_team = [most for limited, most in limits if limited == everyone]
-    others = [limit for limit in dict.fromkeys(limits) if limit[0] != everyone]
-    for most in sorted({*of_team, sets.plan.most_below(sets.threshold)}):
+    sizes = {sets.plan.most_below(sets.threshold), *(most for robots, most in limits if robots == everyone)}
+    for most in sorted(sizes):
         with suppress(NotClosedError):
-            return sets_proof(sets, most + 1, max_nodes), others
+            lemma = sets_proof(sets, most + 1, max_nodes)
+            return group_tree(sets, replace(question, most=most), max_nodes), {"sets": lemma}
     raise NotClosedError
 
 
-def _limited_tree(
-    sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int
-) -> tuple[GroupTree, list[dict[str, Any]]]:
-    """The tree of groups, and the limits that it names, with their proofs; it does without one of too large a proof.
-
-    Raises
-    ------
-    NotClosedError : a group is neither closed nor listed, or the tree is too large.
-    """
+def _with_limits(sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int) -> Lemmas:
+    """By the limits that the tree names, each proved with those before; it does without those of too large proofs."""
+    nobody = {"size": sets.plan.robots + 1, "tree": ["budget"]}
+    everyone = (1 << sets.plan.robots) - 1, sets.plan.most_below(sets.threshold)
+    limits = sorted({*limits, everyone}, key=lambda limit: (limit[0].bit_count(), limit))
     while True:
-        tree, proofs, left = group_tree(sets, question, max_nodes, limits), [], LARGEST_LIMITS
-        for limit in tree.used:
-            try:
-                proofs.append(_limit_proof(sets, limit, min(left, max_nodes)))
-            except NotClosedError:
-                limits = [one for one in limits if one != limit]
-                break
-            left -= len(proofs[-1]["tree"])
-        else:
-            return tree, proofs
-
-
-def _shorter(
-    sets: PlanSets, question: Question, tree: GroupTree, proofs: list[dict[str, Any]]
-) -> tuple[GroupTree, list[dict[str, Any]]]:
-    """The same, or a tree without limits if that has fewer nodes in all: one that is used once says too much."""
-    nodes = len(tree.nodes) + sum(len(proof["tree"]) for proof in proofs)
-    if proofs:
-        with suppress(NotClosedError, UndecidedError), limited(SHARE_OF_SHORTER * seconds_left()):
-            plain = group_tree(sets, question, nodes)
-            if len(plain.nodes) < nodes:
-                return plain, []
-    return tree, proofs
-
-
-def _limit_proof(sets: PlanSets, limit: Limit, max_nodes: int) -> dict[str, Any]:
-    limited, most = limit
-    return {"robots": list(robots_of(limited)), **sets_proof(sets, most + 1, max_nodes, limited)}
+        tree = group_tree(sets, question, max_nodes, limits)
+        proofs: dict[Limit, dict[str, Any]] = {}
+        left = LARGEST_PROOF - len(tree.nodes) - sum(len(bound["flow"]) for bound in tree.bounds)
+        for robots, most in tree.used:
+            with suppress(NotClosedError):
+                proof = sets_proof(sets, most + 1, max(min(left, max_nodes), 0), robots, list(proofs))
+                proofs[robots, most] = {"robots": list(robots_of(robots)), **proof}
+                left -= len(proof["tree"])
+        if len(proofs) == len(tree.used):
+            return tree, {"sets": nobody, "limits": list(proofs.values())}
+        limits = list(proofs)
 
 
 def _listed(threat: Threat, question: Question, robots: int, need: int) -> Listed:

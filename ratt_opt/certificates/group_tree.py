@@ -14,9 +14,7 @@ from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from numpy.typing import NDArray
+    from collections.abc import Sequence
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.pricing import Plan
@@ -64,7 +62,7 @@ class TreeRecord(Structure):
 @dataclass(frozen=True, slots=True)
 class GroupTree:
     """``nodes`` in preorder as a certificate has them; ``bounds`` : prices and flows; ``listed`` : masks of groups, and
-    how many of each are blinded at least; ``used`` : limits that nodes name, which they do by their places here."""
+    how many of each are blinded at least; ``used`` : limits that nodes name, by their places here."""
 
     nodes: list[Any]
     bounds: list[dict[str, Any]]
@@ -90,16 +88,16 @@ class _Trees:
         self.nodes = np.zeros((max_nodes + 4 * robots + 12, 2), np.int64)
         self.flows, self.recent = np.zeros((flows, 2 + arcs), np.int64), np.zeros(flows + 1, np.int64)
         self.listed, self.needs = np.zeros((listed, robots), np.int8), np.zeros(listed, np.int64)
-        self.limited = _rows([limited for limited, _ in limits], robots)
+        self.limited = np.array([limited for limited, _ in limits], np.uint64)
         self.most, self.uses = np.array([most for _, most in limits], np.int64), np.zeros(len(limits), np.int64)
         arrays = self.nodes, self.flows, self.recent, self.listed, self.needs
         limited = self.limited, self.most, self.uses
         numbers = limit, averages, 0, len(self.nodes), 0, flows, 0, listed
         self.record = TreeRecord(*numbers, *map(address, arrays), len(limits), *map(address, limited))
 
-    def named(self) -> list[Any]:
-        """The nodes as a certificate has them."""
-        names, places = (*BRANCHES, *LEAVES), (np.cumsum(self.uses > 0) - 1).tolist()
+    def named(self, places: list[int]) -> list[Any]:
+        """The nodes as a certificate has them; ``places`` : of the limits there."""
+        names = *BRANCHES, *LEAVES
         written = ((names[kind], number) for kind, number in self.nodes[: self.record.count].tolist())
         return [
             {name: places[number] if name == "limit" else number} if name in NUMBERED else name
@@ -107,12 +105,12 @@ class _Trees:
         ]
 
 
-def _rows(masks: Iterable[int], robots: int) -> NDArray[np.int8]:
-    return np.array([[mask >> i & 1 for i in range(robots)] for mask in masks], np.int8).reshape(-1, robots)
-
-
-def sets_proof(sets: PlanSets, size: int, max_nodes: int, among: int | None = None) -> dict[str, Any]:
+def sets_proof(
+    sets: PlanSets, size: int, max_nodes: int, among: int | None = None, limits: Sequence[Limit] = ()
+) -> dict[str, Any]:
     """Return the record of a proof that any ``size`` robots are worth the threshold, or any of those in a bit mask.
+
+    ``limits`` : that are proved, which nodes name by their places
 
     Raises
     ------
@@ -121,11 +119,11 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int, among: int | None = No
     plan = sets.plan
     if size > plan.robots:
         return {"size": size, "tree": ["budget"]}
-    trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages)
+    trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages, limits=limits)
     nobody = np.zeros(plan.robots, dtype=np.int64)
     call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_void_p] * 3, *[c_int64] * 2)
-    members = _rows([(1 << plan.robots) - 1 if among is None else among], plan.robots)
-    rows, depth = np.zeros((plan.robots + 1, 3), np.int32), np.full(1, -1, np.int32)
+    members = np.array([among is None or among >> i & 1 for i in range(plan.robots)], np.int8)
+    rows, depth = np.zeros((plan.robots + 1, 3), np.int64), np.full(1, -1, np.int32)
     effort, looked, code = CRITERIA // sets.objective.n_targets, 0, PAUSED
     with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody) as search:
         while code == PAUSED and looked < MOST_CRITERIA:
@@ -137,7 +135,7 @@ def sets_proof(sets: PlanSets, size: int, max_nodes: int, among: int | None = No
             looked += CRITERIA
     if code != FINISHED:
         raise NotClosedError
-    return {"size": size, "tree": trees.named()}
+    return {"size": size, "tree": trees.named(list(range(len(limits))))}
 
 
 def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Sequence[Limit] = ()) -> GroupTree:
@@ -164,7 +162,8 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Seque
     masks = [sum(1 << int(i) for i in np.flatnonzero(row)) for row in trees.listed[: record.n_listed]]
     bounds = [_bound(plan, flow) for flow in trees.flows[: record.n_flows]]
     listed = list(zip(masks, trees.needs[: record.n_listed].tolist(), strict=True))
-    return GroupTree(trees.named(), bounds, listed, [limits[k] for k in np.flatnonzero(trees.uses).tolist()])
+    used = [limits[k] for k in np.flatnonzero(trees.uses).tolist()]
+    return GroupTree(trees.named((np.cumsum(trees.uses > 0) - 1).tolist()), bounds, listed, used)
 
 
 def _bound(plan: Plan, flow: IntArray) -> dict[str, Any]:

@@ -48,6 +48,8 @@ LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
 """The largest shave is at least so many times what the objective's values are off by."""
 LOWER_SHARE = 0.4
 """Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
+CHECKED_SHARE = 0.7
+"""Share of them, less the reserve, for verifying one proof; if that does not end, something less is proved."""
 RESERVED, LEAST_RESERVED = 1.5, 0.1
 """Times as many seconds as the upper end took to bound, and seconds besides, that are kept from verifying both ends:
 where that does not end, the file is verified with the upper end alone."""
@@ -187,9 +189,9 @@ def write_certificate(
         high = max(float(upper), _proved_upper(Statement(record, plan, prior_range), upper_part), 0.0)
         reserve = RESERVED * (monotonic() - began) + LEAST_RESERVED
         origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
-        is_undecided = False
+        undecided: object = None
         for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
-            if is_undecided and lower_part is not ENUMERATED:
+            if lower_part is undecided:
                 continue
             document = {
                 "format": FORMAT,
@@ -202,13 +204,14 @@ def write_certificate(
                 "upper": upper_part,
                 "lower": lower_part,
             }
+            is_last = lower_part is ENUMERATED
             try:
-                with limited(seconds_left() - (0.0 if lower_part is ENUMERATED else reserve)):
+                with limited(seconds_left() if is_last else CHECKED_SHARE * (seconds_left() - reserve)):
                     return _write_verified(document, path, lower - low, high - upper)
             except ProofError as error:
-                if lower_part is ENUMERATED:
+                if is_last:
                     raise
-                is_undecided = isinstance(error, UndecidedError)
+                undecided = lower_part if isinstance(error, UndecidedError) else None
         raise AssertionError  # the last claim is an enumeration
 
 
@@ -260,20 +263,18 @@ def _round_up(bound: fmpq | arb) -> float:
 
 
 def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterator[tuple[float, dict[str, Any]]]:
-    """Floats at or a little below ``lower`` with a cover of all attacks; last ``lower`` with no more than a word.
-
-    Where none is found for ``lower``, for what is proved some hundredths below.
-    """
+    """Floats at or a little below ``lower`` with a proof; then some hundredths below; last ``lower`` with a word."""
     # Values far below the prior's criterion are differences of larger numbers: no share of them covers their rounding.
     rounding = ROUNDINGS * problem.information_objective.rounding / LARGEST_SHAVE
     scale = max(abs(lower), abs(problem.objective(elements)), rounding)
-    proved, below = lower, LARGEST_SHAVE * scale / 10
-    with limited(LOWER_SHARE * seconds_left()):
-        part = lower_proof(problem, elements, lower - below)
-    if part is ENUMERATED:
+    below = LARGEST_SHAVE * scale / 10
+    for prove in (_whole_proof, weaker_lower_proof):
         with limited(LOWER_SHARE * seconds_left()):
-            threshold, part = weaker_lower_proof(problem, elements, lower - below)
-            proved = threshold + below
-    if part is not ENUMERATED:
-        yield from ((proved - shave * scale, part) for shave in SHAVES)
+            threshold, part = prove(problem, elements, lower - below)
+        if part is not ENUMERATED:
+            yield from ((min(lower, threshold + below) - shave * scale, part) for shave in SHAVES)
     yield lower, ENUMERATED
+
+
+def _whole_proof(problem: Problem, elements: IntArray, threshold: float) -> tuple[float, Any]:
+    return threshold, lower_proof(problem, elements, threshold)

@@ -21,6 +21,7 @@ from ratt_opt import (
     TraceObjective,
     certify,
     exhaustive_optimum,
+    network_scenario,
     problem_document,
     random_scenario,
     solve_maxmin,
@@ -246,6 +247,25 @@ def test_where_time_ends_the_upper_end_is_proved_alone(kind, tmp_path, monkeypat
     assert not verified.lower_proved
     assert verified.upper >= exhaustive_optimum(problem).lower * (1 - 1e-9)
     assert verified.upper == pytest.approx(result.upper, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_where_time_ends_a_little_less_is_proved(kind, tmp_path, monkeypatch):
+    """If the proof of the whole lower end cannot be verified in time, there is one of a hundredth less."""
+    problem, asked = network_scenario("disk-6", 9, 4, alpha_s=1, alpha_c=3, seed=2).problem(kind), []
+    result = solve_maxmin(problem)
+
+    def slow(file, **options):
+        asked.append(json.loads(file.read_text())["claim"]["lower"])
+        if asked[-1] > 0.995 * result.lower:
+            raise UndecidedError("not decided within 1 s")
+        return verify_certificate(file, **options)
+
+    step(monkeypatch, "verification", lambda _: slow)
+    verified = certify(problem, result, tmp_path / "c.json", time_limit=30).verified
+    assert len(asked) == 2
+    assert verified.lower_proved
+    assert verified.lower == pytest.approx(0.99 * result.lower, rel=1e-6)
 
 
 @pytest.mark.parametrize("ball", [arb(0), arb(0, 1e-70), arb(1, 1e-300), arb(-1, 1e-30)])

@@ -210,8 +210,30 @@ def test_what_is_no_limit(tmp_path):
     forced = {"conclusion": "forced", "sets": PAIRS, "limits": []}
     assert decided(tmp_path, document(forced, TRIANGLE, 1, 0))[0] in (1, 2)
     assert decided(tmp_path, document(by_duals() | {"limits": []}, PATH, 1, 0)) == [0]
-    tree_of_sets = limited(tree, lemma=[{"limit": 0}, "copies"])
-    assert decided(tmp_path, document(tree_of_sets, PATH, 1, 0)) == [1]
+
+
+def test_limits_that_name_others(tmp_path):
+    """If any two of robots 0 and 1 are worth it, so are any three; and not one."""
+    tree, pair = [*BLINDED[:3], {"limit": 1}, *BLINDED[3:]], {"robots": [0, 1], "size": 2, "tree": ["copies"]}
+    for lemma, size, code in (
+        ([{"limit": 0}, "budget"], 3, 0),
+        ([{"limit": 0}, "budget"], 2, 1),
+        ([{"limit": 0}, "copies"], 2, 0),
+        ([{"sense": 2}, "copies", {"limit": 0}, "budget"], 2, 0),
+        ([{"sense": 2}, {"limit": 0}, "budget", "copies"], 2, 1),
+        ([{"limit": 1}, "copies"], 2, 1),
+        ([{"limit": 2}, "copies"], 2, 1),
+    ):
+        lower = limited(tree, size=size, lemma=lemma)
+        lower["limits"] = [pair, *lower["limits"]]
+        found = decided(tmp_path, document(lower, PATH, 1 if size == 2 else 0, 0))[0]
+        assert found == code, (lemma, size)
+        if code == 0:
+            lower["limits"].reverse()
+            names_later = any("limit" in node for node in lemma)
+            assert decided(tmp_path, document(lower, PATH, 0, 0)) == [1 if names_later else 0]
+    forward = {"size": 2, "tree": [{"limit": 0}, "copies"]}
+    assert decided(tmp_path, document(limited(tree) | {"sets": forward}, PATH, 1, 0)) == [1]
 
 
 def test_real_limits_are_decided_alike(tmp_path):

@@ -83,7 +83,10 @@ class Cases:
         """Sets of robots, and the most of these that sense in a group worth less than the claim."""
 
     def check_limits(self, given: object) -> int:
-        """Check that of each limit's robots any ``size`` are worth the claim; returns the number of leaves."""
+        """Check that of each limit's robots any ``size`` are worth the claim; returns the number of leaves.
+
+        The trees may name the limits before their own.
+        """
         leaves = 0
         for limit in array("limits", given):
             members, number, tree = fields("limit", limit, "robots size tree")
@@ -103,7 +106,7 @@ class Cases:
         everyone = self.everyone
         members = everyone if among is None else among
         root = Case(self.worth.nobody, everyone, 0, members, 0, everyone, size, size, 0, 0)
-        return self.check(tree, root, {"budget": self._close_too_few}, ("sense",))
+        return self.check(tree, root, {"budget": self._close_no_set}, ("sense", "limit"))
 
     def groups(self, most: int, least: int = 0, blinded: int | None = None) -> Case:
         """Groups of an attack: ``least`` to ``most`` of the robots sense; so many are ``blinded``, if that is given."""
@@ -183,8 +186,8 @@ class Cases:
         need(0 < count <= among.bit_count(), "lower proof: no robot is missing, or too few are left")
         self.worth.require(case.known, robots_of(among), count)
 
-    def _close_too_few(self, case: Case, _: object) -> None:
-        need(_is_short(case), "lower proof: a leaf's set may have robots enough")
+    def _close_no_set(self, case: Case, _: object) -> None:
+        need(_is_short(case) or case.least > case.most, "lower proof: a leaf's set may have robots enough")
 
     def _close_beyond(self, case: Case, _: object) -> None:
         need(self._is_beyond(case), "lower proof: a leaf's group may be part of an attack")

@@ -15,9 +15,10 @@ enum { TRIED = 64 };             /* kept flows, those that closed a case last */
 /* Robots valued at a case, for each robot, to find how many are blinded, and to show it; the latter in one group, too. */
 enum { QUICK = 60, WRITTEN = 600, OF_ONE = 10000 };
 
-/* Of a tree over sets: any `size` of the `count` robots in the search's row of order are worth the threshold with what senses; those
-   before `first` do not sense. */
+/* Of a tree over sets: any `size` of the `count` robots in the search's row of order are worth the threshold with those in `sensing`;
+   those before `first` do not sense. */
 typedef struct {
+    uint64_t sensing; /* if limits close rows */
     int32_t count, first, size;
 } Row;
 
@@ -30,6 +31,7 @@ typedef struct {
     uint8_t *seen;  /* (robots) */
     int *queue;     /* (robots) */
     Row *rows;      /* (robots + 1) */
+    int by_limits;  /* whether limits close rows */
 } Proof;
 
 static int count_sure(const Proof *p, const Node *node) {
@@ -162,39 +164,46 @@ static int least_blinded(const Proof *p, const Node *node) {
     return need > node->low ? need : node->low;
 }
 
-/* Blinded robots of the case's groups, at least, as a limit says. */
-static int blinded_by(const Proof *p, const Node *node, int64_t limit) {
-    const int8_t *limited = p->out->limited + limit * p->robots;
-    int inside = 0;
-    for (int i = 0; i < p->robots; i++) inside += limited[i] && IS_INSIDE(node->state[i]);
-    return inside - (int)p->out->most[limit];
+/* Robots with one of some bits in their state, and without others. */
+static uint64_t robots_that(const Proof *p, const Node *node, int with, int without) {
+    uint64_t set = 0;
+    for (int i = 0; i < p->robots; i++) set |= (uint64_t)((node->state[i] & with) && !(node->state[i] & without)) << i;
+    return set;
 }
 
-/* Robots of the case's groups that sense, at most, as a limit says. */
-static int sensing_by(const Proof *p, const Node *node, int64_t limit) {
-    const int8_t *limited = p->out->limited + limit * p->robots;
-    int others = 0;
-    for (int i = 0; i < p->robots; i++) others += !limited[i] && (node->state[i] & SENSES);
-    return others + (int)p->out->most[limit];
+/* Blinded robots at least, and robots that sense at most, as a limit says of a group with some robots and perhaps others. */
+static int blinded_by(const GroupTree *out, int64_t limit, uint64_t inside) {
+    return size_of(inside & out->limited[limit]) - (int)out->most[limit];
+}
+
+static int sensing_by(const GroupTree *out, int64_t limit, uint64_t may_sense) {
+    return size_of(may_sense & ~out->limited[limit]) + (int)out->most[limit];
 }
 
 /* A limit that says that so many robots are blinded; if it can be, one that the tree has already. -1 if none does. */
 static int64_t limit_for(const Proof *p, const Node *node, int blinded) {
+    const GroupTree *out = p->out;
     int64_t best = -1;
-    for (int64_t k = 0; k < p->out->n_limits; k++)
-        if ((best < 0 || p->out->uses[k] > p->out->uses[best]) && blinded_by(p, node, k) >= blinded) best = k;
+    uint64_t inside = out->n_limits ? robots_that(p, node, SENSES | BLINDED, OUTSIDE) : 0;
+    for (int64_t k = 0; k < out->n_limits; k++)
+        if ((best < 0 || out->uses[k] > out->uses[best]) && blinded_by(out, k, inside) >= blinded) best = k;
     return best;
 }
 
 /* Blinded robots of the case's groups, at least, as far as is written or a limit says. */
 static int known_blinded(const Proof *p, const Node *node) {
     int blinded = least_blinded(p, node);
-    while (limit_for(p, node, blinded + 1) >= 0) blinded++;
+    uint64_t inside = p->out->n_limits ? robots_that(p, node, SENSES | BLINDED, OUTSIDE) : 0;
+    for (int64_t k = 0; k < p->out->n_limits; k++) {
+        int by = blinded_by(p->out, k, inside);
+        if (by > blinded) blinded = by;
+    }
     return blinded;
 }
 
 static void write_limit(Proof *p, Node *node, int64_t limit) {
-    int most = sensing_by(p, node, limit), low = blinded_by(p, node, limit);
+    int most = sensing_by(p->out, limit, robots_that(p, node, SENSES, 0));
+    int low = blinded_by(p->out, limit, robots_that(p, node, SENSES | BLINDED, OUTSIDE));
     write_node(p, LIMIT, limit);
     p->out->uses[limit]++;
     if (most < node->most) node->most = most;
@@ -229,17 +238,29 @@ static int copies_are_enough(Proof *p, const Node *node, int size) {
 }
 
 /* A row of the search: what senses, and the worth of copies of each robot; those of least worth come first. */
-static void open_row(Proof *p, Row *rows, int depth, int count, int size) {
+static void open_row(Proof *p, Row *rows, int depth, int count, int size, uint64_t sensing) {
     Search *s = p->s;
     int *order = s->order + depth * p->robots;
     double *sums = s->sums + (size_t)depth * (s->width + p->robots), *worth = sums + s->width;
-    rows[depth] = (Row){count, 0, size};
+    rows[depth] = (Row){sensing, count, 0, size};
     for (int k = 0; size > 0 && k < count; k++) {
         int robot = order[k], at = k;
         double value = value_of_copies(s, sums, size, robot, -1);
         for (; at > 0 && worth[at - 1] > value; at--) worth[at] = worth[at - 1], order[at] = order[at - 1];
         worth[at] = value, order[at] = robot;
     }
+}
+
+/* A limit that says that no set of the row is below the threshold: too many of its robots would sense. -1 if none does. */
+static int64_t closing_limit(const Proof *p, const Row *row, int depth) {
+    const GroupTree *out = p->out;
+    const int *order = p->s->order + depth * p->robots;
+    uint64_t may_sense = row->sensing;
+    if (!p->by_limits) return -1;
+    for (int k = row->first; k < row->count; k++) may_sense |= (uint64_t)1 << order[k];
+    for (int64_t k = 0; k < out->n_limits; k++)
+        if (sensing_by(out, k, may_sense) < size_of(row->sensing) + row->size) return k;
+    return -1;
 }
 
 /* What closes a row: a leaf, -1 if it has to branch, -2 if what senses is worth less and nobody more does. */
@@ -261,7 +282,9 @@ static int write_sets(Proof *p, Row *rows, int32_t *depth, int64_t effort) {
     while (*depth >= 0) {
         Row *row = rows + *depth;
         int leaf = closing_leaf(p, row, *depth);
+        int64_t limit = leaf == -1 ? closing_limit(p, row, *depth) : -1;
         if (leaf == -2) return OPEN;
+        if (limit >= 0) write_node(p, LIMIT, limit), leaf = BUDGET;
         if (leaf >= 0) {
             write_node(p, leaf, 0);
             if (--*depth >= 0) rows[*depth].first++;
@@ -274,7 +297,7 @@ static int write_sets(Proof *p, Row *rows, int32_t *depth, int64_t effort) {
         write_node(p, SENSE, order[row->first]);
         add_information(s->q.team, sums, 1.0, order[row->first], sums + s->width + n);
         memcpy(order + n, order + row->first + 1, (size_t)left * sizeof(int));
-        open_row(p, rows, ++*depth, left, row->size - 1);
+        open_row(p, rows, ++*depth, left, row->size - 1, row->sensing | (p->by_limits ? (uint64_t)1 << order[row->first] : 0));
         effort -= left;
     }
     return FINISHED;
@@ -290,7 +313,7 @@ static int write_inside(Proof *p, const Node *node, int size, int64_t effort) {
     for (int i = 0; i < p->robots; i++)
         if (IS_INSIDE(node->state[i]) && MAY_SENSE(node->state[i])) s->order[count++] = i;
     int32_t depth = 0;
-    open_row(p, p->rows, 0, count, size);
+    open_row(p, p->rows, 0, count, size, 0);
     if (write_sets(p, p->rows, &depth, effort - count) == FINISHED) return 1;
     p->out->count = before;
     return 0;
@@ -342,8 +365,9 @@ static int find_blinded(Proof *p, Node *node, int64_t effort, int64_t written_ef
 static void limit_sensing(Proof *p, Node *node) {
     int64_t best = -1;
     int fewest = node->most;
+    uint64_t may_sense = p->out->n_limits ? robots_that(p, node, SENSES, 0) : 0;
     for (int64_t k = 0; k < p->out->n_limits; k++) {
-        int most = sensing_by(p, node, k);
+        int most = sensing_by(p->out, k, may_sense);
         if (most < fewest) fewest = most, best = k;
     }
     if (best >= 0) write_limit(p, node, best);
@@ -410,7 +434,7 @@ static int next_member(Proof *p, const Node *node) {
 static int expand(Proof *p) {
     Search *s = p->s;
     Node *node = s->nodes + s->depth - 1, *other = node + 1;
-    int64_t quick = (int64_t)QUICK * p->robots, written = (int64_t)WRITTEN * p->robots, of_one = (int64_t)OF_ONE * p->robots;
+    int64_t quick = p->out->n_limits ? 0 : (int64_t)QUICK * p->robots, written = (int64_t)WRITTEN * p->robots, of_one = (int64_t)OF_ONE * p->robots;
     s->visited++, s->depth--;
     if (node->found && value_of(s->q.team, node->sums) >= s->q.threshold) {
         write_node(p, WORTH, 0);
@@ -468,13 +492,13 @@ static int expand(Proof *p) {
    that is -1: 0 it is finished, 1 paused once so many robots were valued, 2 too large for the arrays, 3 some set is worth less. */
 EXPORTED int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row *rows, int32_t *depth, int64_t size,
                             int64_t effort) {
-    Proof p = {.s = s, .robots = s->robots, .out = out};
+    Proof p = {.s = s, .robots = s->robots, .out = out, .by_limits = out->n_limits > 0};
     if (*depth < 0) {
         memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
         int count = 0;
         for (int i = 0; i < s->robots; i++)
             if (among[i]) s->order[count++] = i;
-        open_row(&p, rows, *depth = 0, count, (int)size);
+        open_row(&p, rows, *depth = 0, count, (int)size, 0);
     }
     return write_sets(&p, rows, depth, effort);
 }

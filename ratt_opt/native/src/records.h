@@ -146,7 +146,7 @@ typedef struct {
     int8_t *listed;                      /* (most_listed, robots) who is inside */
     int64_t *needs;                      /* (most_listed) blinded robots, at least */
     int64_t n_limits;
-    int8_t *limited;                     /* (n_limits, robots) whose robots */
+    uint64_t *limited;                   /* (n_limits) whose robots; teams of up to 64 have limits */
     int64_t *most, *uses;                /* (n_limits) how many of them sense at most; nodes that say so */
 } GroupTree;
 

@@ -169,7 +169,9 @@ def test_limits_keep_their_rules(tmp_path, good):
         ({"limits": [limit | {"most": 1}]}, FileFormatError, "limit must be a record of robots, size, tree"),
         ({"limits": [limit]}, ProofError, "may have robots enough"),
         ({"limits": [limit | {"tree": [{"sense": 2}, "budget", "budget"]}]}, ProofError, "is decided twice"),
-        ({"limits": [limit | {"tree": tree}]}, ProofError, "is none of this proof"),
+        ({"limits": [limit | {"tree": [{"inside": 0}, "budget", "budget"]}]}, ProofError, "is none of this proof"),
+        ({"limits": [limit | {"tree": tree}]}, FileFormatError, "lower tree limit must be an integer in"),
+        ({"sets": {"size": 4, "tree": tree}, "limits": []}, FileFormatError, "lower tree limit must be an integer in"),
         ({"limits": []}, FileFormatError, "lower tree limit must be an integer in"),
         ({}, FileFormatError, "lower tree limit must be an integer in"),
     ):

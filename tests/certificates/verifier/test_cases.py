@@ -193,6 +193,9 @@ def assert_listed(drawn, duals, case, groups):
 def random_tree(drawn, decided, known, size):
     """A tree over sets that ends in what is true by chance."""
     left = [i for i in range(drawn.n) if i not in decided]
+    if drawn.cases.limits and drawn.rng.uniform() < 0.2:
+        limit = int(drawn.rng.integers(len(drawn.cases.limits)))
+        return [{"limit": limit}, *random_tree(drawn, decided, known, size)]
     if not left or drawn.rng.uniform() < 0.3:
         return [str(drawn.rng.choice(["worth", "copies", "budget"]))]
     robot = int(drawn.rng.choice(left))
@@ -222,7 +225,7 @@ def test_sets_of_a_size_by_definition(part):
         sets = combinations(among, size)
         assert all(drawn.problem.objective(robots) >= drawn.claim * (1 - 1e-9) for robots in sets)
     assert accepted >= 100
-    for node in ("inside", "sensing", "blinded", "limit", "flow"):
+    for node in ("inside", "sensing", "blinded", "flow"):
         with pytest.raises(ProofError, match="none of this proof"):
             drawn.cases.check_sets(1, [{node: 0}])
 

@@ -20,7 +20,7 @@ from tests.certificates.engine import check, drawn, statement
 
 LARGEST = 120
 """Nodes of a forged tree."""
-FLOWS, LIMITS = 6, 2
+FLOWS, LIMITS = 6, 3
 
 
 class Forger:
@@ -33,6 +33,7 @@ class Forger:
 
     def forged(self):
         """A proof, closed wherever the verifier lets it be, or ``None``."""
+        self.cases.limits.clear()
         size = next((k for k in range(self.n + 1) if self._sets(k)), self.n + 1)
         sets = {"size": size, "tree": self._sets(size) or ["budget"]}
         if self.rng.uniform() < 0.2:
@@ -47,9 +48,7 @@ class Forger:
             flow = rng.integers(-(link + cut), link + cut + 1, links).tolist()
             bounds.append({"blinding": int(rng.choice([0, rng.integers(0, 40)])), "cut": cut, "flow": flow})
         bounds.append({"blinding": 0, "cut": 0, "flow": [0] * links})
-        self.cases.limits.clear()
         limits = [limit for limit in (self._limit() for _ in range(LIMITS)) if limit is not None]
-        self.cases.check_limits(limits)
         self.duals = Duals(self.cases, given)
         self.duals.read_bounds(bounds)
         self.closing = {"flow": self.duals.close_by_flow}
@@ -70,13 +69,16 @@ class Forger:
         for size in range(len(robots) + 1):
             tree = self._sets(size, robots)
             if tree is not None:
-                return {"robots": robots, "size": size, "tree": tree}
+                limit = {"robots": robots, "size": size, "tree": tree}
+                self.cases.check_limits([limit])
+                return limit
         return None
 
     def _sets(self, size, among=None):
         """A tree over sets of a size, robots in turn; ``None`` if some are worth less."""
         robots = list(range(self.n)) if among is None else among
-        trees = (["worth"], ["copies"], ["budget"], self._every_set(size, robots, 0))
+        limited = ([{"limit": k}, "budget"] for k in range(len(self.cases.limits)))
+        trees = (["worth"], ["copies"], ["budget"], *limited, self._every_set(size, robots, 0))
         return next((tree for tree in trees if self._is_closed_set(size, tree, robots)), None)
 
     def _every_set(self, size, robots, known):
