@@ -43,8 +43,8 @@ SEARCHED = 2_000_000
 """Nodes of the search for duals: seconds, up to half a minute at 30 robots."""
 MOST_PARTITIONS = 200_000
 """Nodes of the search of partitions."""
-SHARE_OF_SHORTER = 0.3
-"""Of the seconds left, to look for a proof without limits."""
+WITH_LIMITS, SHORTER = 0.6, 0.3
+"""Shares of the seconds left for a proof with limits, and then for a shorter one without."""
 LARGEST_PROOF = 1_500_000
 """Most nodes and numbers of flows; the verifier reads files of two million."""
 
@@ -95,11 +95,12 @@ def _shorter(sets: PlanSets, question: Question, limits: list[Limit], max_nodes:
     if not limits:
         return _without_limits(sets, question, limits, max_nodes)
     try:
-        tree, lemmas = _with_limits(sets, question, limits, max_nodes)
-    except NotClosedError:
+        with limited(WITH_LIMITS * seconds_left()):
+            tree, lemmas = _with_limits(sets, question, limits, max_nodes)
+    except (NotClosedError, UndecidedError):
         return _without_limits(sets, question, limits, max_nodes)
     nodes = len(tree.nodes) + sum(1 + len(limit["tree"]) for limit in lemmas["limits"])
-    with suppress(NotClosedError, UndecidedError), limited(SHARE_OF_SHORTER * seconds_left()):
+    with suppress(NotClosedError, UndecidedError), limited(SHORTER * seconds_left()):
         plain, lemma = _without_limits(sets, question, limits, min(nodes, max_nodes))
         if len(plain.nodes) + len(lemma["sets"]["tree"]) <= nodes:
             return plain, lemma
@@ -111,9 +112,11 @@ def _without_limits(sets: PlanSets, question: Question, limits: list[Limit], max
     everyone = (1 << sets.plan.robots) - 1
     sizes = {sets.plan.most_below(sets.threshold), *(most for robots, most in limits if robots == everyone)}
     for most in sorted(sizes):
-        with suppress(NotClosedError):
+        try:
             lemma = sets_proof(sets, most + 1, max_nodes)
-            return group_tree(sets, replace(question, most=most), max_nodes), {"sets": lemma}
+        except NotClosedError:
+            continue
+        return group_tree(sets, replace(question, most=most), max_nodes), {"sets": lemma}
     raise NotClosedError
 
 
