@@ -10,8 +10,8 @@ import json
 import numpy as np
 import pytest
 
-from tests.certificates.cases import certified
 from tests.certificates.engine import LIMITED, small_proofs
+from tests.certificates.mutants import with_lower_end
 from tests.formal.verified import decisions, python_decision, sweep
 
 PATH, TRIANGLE = [[0, 1], [1, 2]], [[0, 1], [0, 2], [1, 2]]
@@ -238,10 +238,8 @@ def test_limits_that_name_others(tmp_path):
 
 def test_real_limits_are_decided_alike(tmp_path):
     def documents():
-        for problem, plan, worst, part in small_proofs("cover", LIMITED):
-            base = certified(problem, tmp_path / "base.json")[1] | {"plan": [int(e) for e in plan], "lower": part}
-            claim = {"lower": worst * (1 - 2e-7), "upper": max(base["claim"]["upper"], worst)}
-            yield np.random.default_rng(54), base | {"claim": claim}
+        for proof in small_proofs("cover", LIMITED):
+            yield np.random.default_rng(54), with_lower_end(*proof, tmp_path / "base.json")
 
     paths = []
     for k, (_, written) in enumerate(documents()):

@@ -22,8 +22,6 @@ __all__ = ["ENUMERATED", "check_lower"]
 
 ENUMERATED = "enumerated"
 """The conclusion that says that the outcomes were enumerated in floating point: no proof."""
-NO_LIMITS: dict[str, list[object]] = {"limits": []}
-"""A field that a proof may leave out."""
 
 
 def check_lower(about: Statement, part: Any, lower: fmpq) -> int:
@@ -38,7 +36,7 @@ def check_lower(about: Statement, part: Any, lower: fmpq) -> int:
     known = isinstance(conclusion, str) and conclusion in CONCLUSIONS
     need(known, f"lower proof: the conclusion must be {', '.join(CONCLUSIONS)} or {ENUMERATED}")
     names, check = CONCLUSIONS[str(conclusion)]
-    whole = NO_LIMITS | part if NO_LIMITS.keys() <= set(names.split()) else part
+    whole = {"limits": []} | part if "limits" in names.split() else part
     _, sets, *given = fields("lower proof", whole, f"conclusion sets{names}")
     cases = Cases(about, Worth(about, lower))
     number, tree = fields("sets", sets, "size tree")

@@ -164,10 +164,10 @@ static int least_blinded(const Proof *p, const Node *node) {
     return need > node->low ? need : node->low;
 }
 
-/* Robots with one of some bits in their state, and without others. */
+/* Robots with one of some bits in their state, and without others; none if there are no limits to ask about them. */
 static uint64_t robots_that(const Proof *p, const Node *node, int with, int without) {
     uint64_t set = 0;
-    for (int i = 0; i < p->robots; i++) set |= (uint64_t)((node->state[i] & with) && !(node->state[i] & without)) << i;
+    for (int i = 0; p->out->n_limits && i < p->robots; i++) set |= (uint64_t)((node->state[i] & with) && !(node->state[i] & without)) << i;
     return set;
 }
 
@@ -184,7 +184,7 @@ static int sensing_by(const GroupTree *out, int64_t limit, uint64_t may_sense) {
 static int64_t limit_for(const Proof *p, const Node *node, int blinded) {
     const GroupTree *out = p->out;
     int64_t best = -1;
-    uint64_t inside = out->n_limits ? robots_that(p, node, SENSES | BLINDED, OUTSIDE) : 0;
+    uint64_t inside = robots_that(p, node, SENSES | BLINDED, OUTSIDE);
     for (int64_t k = 0; k < out->n_limits; k++)
         if ((best < 0 || out->uses[k] > out->uses[best]) && blinded_by(out, k, inside) >= blinded) best = k;
     return best;
@@ -193,7 +193,7 @@ static int64_t limit_for(const Proof *p, const Node *node, int blinded) {
 /* Blinded robots of the case's groups, at least, as far as is written or a limit says. */
 static int known_blinded(const Proof *p, const Node *node) {
     int blinded = least_blinded(p, node);
-    uint64_t inside = p->out->n_limits ? robots_that(p, node, SENSES | BLINDED, OUTSIDE) : 0;
+    uint64_t inside = robots_that(p, node, SENSES | BLINDED, OUTSIDE);
     for (int64_t k = 0; k < p->out->n_limits; k++) {
         int by = blinded_by(p->out, k, inside);
         if (by > blinded) blinded = by;
@@ -290,7 +290,7 @@ static int write_sets(Proof *p, Row *rows, int32_t *depth, int64_t effort) {
             if (--*depth >= 0) rows[*depth].first++;
             continue;
         }
-        if (p->out->count + 2 * n > p->out->capacity) return FULL;
+        if (p->out->count + 2 * n + 4 > p->out->capacity) return FULL; /* two nodes may close each row down to this one's child */
         if (effort <= 0) return PAUSED;
         int *order = s->order + *depth * n, left = row->count - row->first - 1;
         double *sums = s->sums + (size_t)*depth * (s->width + n);
@@ -365,7 +365,7 @@ static int find_blinded(Proof *p, Node *node, int64_t effort, int64_t written_ef
 static void limit_sensing(Proof *p, Node *node) {
     int64_t best = -1;
     int fewest = node->most;
-    uint64_t may_sense = p->out->n_limits ? robots_that(p, node, SENSES, 0) : 0;
+    uint64_t may_sense = robots_that(p, node, SENSES, 0);
     for (int64_t k = 0; k < p->out->n_limits; k++) {
         int most = sensing_by(p->out, k, may_sense);
         if (most < fewest) fewest = most, best = k;
@@ -434,7 +434,8 @@ static int next_member(Proof *p, const Node *node) {
 static int expand(Proof *p) {
     Search *s = p->s;
     Node *node = s->nodes + s->depth - 1, *other = node + 1;
-    int64_t quick = p->out->n_limits ? 0 : (int64_t)QUICK * p->robots, written = (int64_t)WRITTEN * p->robots, of_one = (int64_t)OF_ONE * p->robots;
+    int64_t written = (int64_t)WRITTEN * p->robots, of_one = (int64_t)OF_ONE * p->robots;
+    int64_t quick = p->out->n_limits ? 0 : (int64_t)QUICK * p->robots; /* limits know as much, and are shorter to write */
     s->visited++, s->depth--;
     if (node->found && value_of(s->q.team, node->sums) >= s->q.threshold) {
         write_node(p, WORTH, 0);
