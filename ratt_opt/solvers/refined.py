@@ -22,9 +22,9 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
-from ratt_opt.solvers.maxmin.candidates import Walk
 from ratt_opt.solvers.maxmin.incumbent import Incumbent, ProvedPlan, break_ties
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.walk import Walk
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.undominated import UndominatedProblem, dominators, undominated
 

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt.solvers.maxmin.candidates import Candidates
+    from ratt_opt.solvers.maxmin.cut_store import CutStore
     from ratt_opt.solvers.maxmin.proof import Split, TreeNode
-    from ratt_opt.solvers.maxmin.relaxation import CutStore
 
 __all__ = ["Backjumps", "ClosingRule", "Frontier"]
 

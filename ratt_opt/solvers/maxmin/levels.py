@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.budget import Stop
-from ratt_opt.solvers.maxmin.candidates import Walk
+from ratt_opt.solvers.maxmin.walk import Walk
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.known import Known, Progress
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.search import Known, Progress
-    from ratt_opt.solvers.maxmin.upper_ends import Turns
+    from ratt_opt.solvers.maxmin.turns import Turns
 
 __all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
 

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-    from ratt_opt.solvers.maxmin.search import Known
 
 __all__ = ["MarginalSearch", "dive", "raised_information"]
 

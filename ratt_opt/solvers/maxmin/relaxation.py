@@ -1,7 +1,7 @@
 """The relaxed plans of a node and the cuts that bound them: solve a program, cut its relaxed plan off, solve again.
 
-:class:`CutStore` keeps all cuts of a search as arrays and derives every bound from them. :class:`NodeProgram` is the
-linear program, of which only the multipliers are used; :class:`CutRounds` adds cuts that its relaxed plan violates.
+:class:`NodeProgram` is the linear program, of which only the multipliers are used; :class:`CutRounds` adds cuts that
+its relaxed plan violates. ``cut_store.py`` keeps the cuts.
 """
 
 from __future__ import annotations
@@ -11,22 +11,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.bounds.cuts import combined_bound, tangent_cut
 from ratt_opt.highs import LinearProgram, Rows, rows_of
-from ratt_opt.solvers.maxmin.proof import TangentCut
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.bounds.cuts import GroupCut
     from ratt_opt.solvers.maxmin.adversary import Adversary
-    from ratt_opt.solvers.maxmin.elements import Choices, Task
-    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-    from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode
+    from ratt_opt.solvers.maxmin.cut_store import CutStore
+    from ratt_opt.solvers.maxmin.elements import Choices
+    from ratt_opt.solvers.maxmin.proof import TreeNode
     from ratt_opt.solvers.maxmin.winners import Winners
 
-__all__ = ["CUTS_A_ROUND", "CutRounds", "CutStore", "RelaxedPlan"]
+__all__ = ["CUTS_A_ROUND", "CutRounds", "RelaxedPlan"]
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 CUTS_A_ROUND = 8
@@ -41,79 +38,6 @@ DEEP = 0.5
 """Share of the depth of the deepest known cut that a stored one needs to be brought back; 0 and 0.9 take 30 nodes."""
 ROUNDING = 1e-12
 """Weights of elements up to this are the simplex method's rounding."""
-
-
-class CutStore:
-    """Cut ``k`` bounds the team value under outcome ``outcomes[k]`` if its group ``groups[k]`` wins.
-
-    Cuts are never removed: leaves refer to them. Scores are stored element by element, because a
-    relaxed plan has few elements.
-    """
-
-    def __init__(self, task: Task, pool: OutcomePool) -> None:
-        self.task, self.pool = task, pool
-        self._cuts: list[GroupCut] = []
-        self._origin = np.zeros((64, 2), dtype=np.int64)
-        self._constants = np.zeros(64)
-        self._scores = np.zeros((task.objective.n, 64))
-
-    def __len__(self) -> int:
-        return len(self._cuts)
-
-    @property
-    def outcomes(self) -> IntArray:
-        """(K,) outcome of each cut."""
-        return self._origin[: len(self._cuts), 0]
-
-    @property
-    def groups(self) -> IntArray:
-        """(K,) group of each cut, by its number in the pool."""
-        return self._origin[: len(self._cuts), 1]
-
-    @property
-    def constants(self) -> FloatArray:
-        """(K,) constants."""
-        return self._constants[: len(self._cuts)]
-
-    def scores(self, cut: int | IntArray) -> FloatArray:
-        """(E,) scores of one cut, or (E, K) of some."""
-        return self._scores[:, cut]
-
-    def bounds(self, selection: FloatArray) -> FloatArray:
-        """(K,) what each cut bounds its group's value by under a relaxed selection (E,)."""
-        chosen = np.flatnonzero(selection)
-        return np.asarray(self.constants + selection[chosen] @ self._scores[chosen, : len(self._cuts)])
-
-    def tangent(self, outcome: int, group: int, point: FloatArray, target: int | None = None) -> int:
-        """Add the tangent of a group's value at the posterior information ``point``; return its index."""
-        return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
-
-    def add(self, outcome: int, group: int, cut: GroupCut) -> int:
-        """Add a cut; return its index."""
-        k = len(self._cuts)
-        if k == len(self._constants):
-            self._origin = np.concatenate([self._origin, np.zeros_like(self._origin)])
-            self._constants = np.concatenate([self._constants, np.zeros_like(self._constants)])
-            self._scores = np.concatenate([self._scores, np.zeros_like(self._scores)], axis=1)
-        self._origin[k] = outcome, group
-        self._constants[k] = cut.constant
-        self._scores[:, k] = cut.scores
-        self._cuts.append(cut)
-        return k
-
-    def usable(self, winners: IntArray) -> BoolArray:
-        """(K,) whether each cut's group is the one that wins its outcome, by ``winners`` (O,)."""
-        return np.asarray(winners[self.outcomes] == self.groups)
-
-    def leaf_bound(self, leaf: Leaf, choices: Sequence[IntArray]) -> tuple[float, FloatArray]:
-        """The bound of a leaf's convex combination over plans within ``choices``, and its combined scores."""
-        cuts = list(leaf.cuts)
-        return combined_bound(self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices)
-
-    def record(self, k: int) -> TangentCut:
-        """One cut as part of a proof."""
-        cut = self._cuts[k]
-        return TangentCut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,7 +8,6 @@ their own, and if that fails the node branches on which group wins (``winners.py
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,25 +16,20 @@ from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division, WinnerDivision
 from ratt_opt.solvers.maxmin.elements import with_choice
-from ratt_opt.solvers.maxmin.frontier import Backjumps, ClosingRule, Frontier
+from ratt_opt.solvers.maxmin.frontier import Backjumps, Frontier
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
-from ratt_opt.solvers.maxmin.relaxation import CUTS_A_ROUND, CutRounds, CutStore
-from ratt_opt.solvers.maxmin.small_groups import SmallGroups, SmallTables
-from ratt_opt.solvers.maxmin.winners import GroupProofs, Winners
+from ratt_opt.solvers.maxmin.relaxation import CUTS_A_ROUND, CutRounds
+from ratt_opt.solvers.maxmin.small_groups import SmallGroups
+from ratt_opt.solvers.maxmin.winners import Winners
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ratt_opt._validation import FloatArray
-    from ratt_opt.solvers.maxmin.elements import Task
-    from ratt_opt.solvers.maxmin.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.known import Known, Progress
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
-    from ratt_opt.solvers.maxmin.upper_ends import Turns
+    from ratt_opt.solvers.maxmin.turns import Turns
 
-    Progress = Callable[[int, float, float], None] | None
-
-__all__ = ["BranchAndBound", "Known"]
+__all__ = ["BranchAndBound"]
 
 # Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
 STALL = 0.03
@@ -43,32 +37,6 @@ STALL = 0.03
 STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
 """Stalls that end the rounds: more rounds against more nodes. Elsewhere 1 and 4 take 30 nodes; at the root, whose
 cuts all nodes inherit, 2 take 32 and 40 take 34. Larger teams were not measured."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Known:
-    """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node."""
-
-    task: Task
-    incumbent: Incumbent
-    rule: ClosingRule
-    cuts: CutStore
-    proofs: GroupProofs
-    tables: SmallTables
-
-    @classmethod
-    def of(cls, task: Task, incumbent: Incumbent, gap: float) -> Known:
-        """What is known before the first tree; ``gap`` : relative width that closes a node."""
-        pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap)
-        cuts = CutStore(task, pool)
-        return cls(
-            task=task,
-            incumbent=incumbent,
-            rule=rule,
-            cuts=cuts,
-            proofs=GroupProofs(cuts, rule, incumbent.budget),
-            tables=SmallTables(task, pool),
-        )
 
 
 class BranchAndBound:

@@ -21,9 +21,10 @@ from ratt_opt.solvers.by_values.search import search_any
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
+from ratt_opt.solvers.maxmin.known import Known
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.search import Known
-from ratt_opt.solvers.maxmin.upper_ends import Turns, UpperEnds, monotone_bound
+from ratt_opt.solvers.maxmin.turns import Turns
+from ratt_opt.solvers.maxmin.upper_ends import UpperEnds, monotone_bound
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.search import Progress
+    from ratt_opt.solvers.maxmin.known import Progress
 
 __all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "search_in_all_coordinates", "solve_maxmin"]
 

@@ -17,17 +17,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
-from ratt_opt.solvers.maxmin.division import divide_elements, mixing_gains
 from ratt_opt.solvers.maxmin.elements import with_choice
+from ratt_opt.solvers.maxmin.mixtures import divide_elements, mixing_gains
 from ratt_opt.solvers.maxmin.proof import Leaf, Split, TreeNode, nodes_below
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.candidates import Candidates
+    from ratt_opt.solvers.maxmin.cut_store import CutStore
     from ratt_opt.solvers.maxmin.elements import Choices, Task
     from ratt_opt.solvers.maxmin.frontier import ClosingRule, Frontier
-    from ratt_opt.solvers.maxmin.relaxation import CutStore
 
 __all__ = ["ClosedGroup", "GroupProofs", "Winners", "close_group"]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import Problem, TraceObjective, network_scenario, solve_maxmin
-from ratt_opt.solvers.maxmin.division import divide_by_scores, rounding_losses
+from ratt_opt.solvers.maxmin.mixtures import divide_by_scores, rounding_losses
 from tests.strategies import information_data
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, solve_maxmin
 from ratt_opt.solvers.maxmin.candidates import Candidates
-from ratt_opt.solvers.maxmin.upper_ends import Turns
+from ratt_opt.solvers.maxmin.turns import Turns
 from ratt_opt.solvers.maxmin.winners import Winners
 from tests.solvers.maxmin.engine import UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
+    from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.levels import Outcome
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.search import Known
-    from ratt_opt.solvers.maxmin.upper_ends import Turns
+    from ratt_opt.solvers.maxmin.turns import Turns
 
 __all__ = ["CoverSearch"]
 

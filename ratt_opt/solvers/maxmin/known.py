@@ -1,0 +1,47 @@
+"""What every tree of a search shares: outcomes, plans, cuts, proofs of weak groups and tables of small ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ratt_opt.solvers.maxmin.cut_store import CutStore
+from ratt_opt.solvers.maxmin.frontier import ClosingRule
+from ratt_opt.solvers.maxmin.small_groups import SmallTables
+from ratt_opt.solvers.maxmin.winners import GroupProofs
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt.solvers.maxmin.elements import Task
+    from ratt_opt.solvers.maxmin.incumbent import Incumbent
+
+    Progress = Callable[[int, float, float], None] | None
+
+__all__ = ["Known"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Known:
+    """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node."""
+
+    task: Task
+    incumbent: Incumbent
+    rule: ClosingRule
+    cuts: CutStore
+    proofs: GroupProofs
+    tables: SmallTables
+
+    @classmethod
+    def of(cls, task: Task, incumbent: Incumbent, gap: float) -> Known:
+        """What is known before the first tree; ``gap`` : relative width that closes a node."""
+        pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap)
+        cuts = CutStore(task, pool)
+        return cls(
+            task=task,
+            incumbent=incumbent,
+            rule=rule,
+            cuts=cuts,
+            proofs=GroupProofs(cuts, rule, incumbent.budget),
+            tables=SmallTables(task, pool),
+        )
