@@ -134,9 +134,9 @@ from .setfunctions.base import SetFunction as SetFunction, TableFunction as Tabl
 from .setfunctions.criteria.trace import TraceObjective as TraceObjective
 from .setfunctions.criteria.logdet import LogDetObjective as LogDetObjective
 from .setfunctions.criteria.maxeig import MaxEigenvalueObjective as MaxEigenvalueObjective
+from .setfunctions.sums import SumFunction as SumFunction, Part as Part
+from .setfunctions.best_elements import Coverage as Coverage, FacilityLocation as FacilityLocation
 from .setfunctions.reference import (
-    Coverage as Coverage,
-    FacilityLocation as FacilityLocation,
     Modular as Modular,
     ConcaveOfModular as ConcaveOfModular,
     Cut as Cut,

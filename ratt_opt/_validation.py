@@ -23,6 +23,7 @@ __all__ = [
     "check_finite",
     "check_integer",
     "check_link",
+    "check_nonnegative",
     "check_number",
     "check_subset",
     "integer_array",
@@ -136,6 +137,14 @@ def check_finite(argument: str, value: object, *, ndim: int | None = None) -> Fl
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise InputError(argument, "must be finite", f"{array[where]} at index {where}")
     array.setflags(write=False)
+    return array
+
+
+def check_nonnegative(argument: str, value: object, *, ndim: int) -> FloatArray:
+    """Return ``value`` as a read-only float64 array of finite numbers that are at least 0."""
+    array = check_finite(argument, value, ndim=ndim)
+    if (array < 0).any():
+        raise InputError(argument, "must not be negative", float(array.min()))
     return array
 
 

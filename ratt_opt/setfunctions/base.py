@@ -11,9 +11,11 @@ from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, 
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import ArrayLike
+
+    from ratt_opt.setfunctions.decomposition import Decomposition
 
 __all__ = ["SetFunction", "SizedFunction", "TableFunction", "check_table_size", "checked_values", "finite_values"]
 
@@ -87,6 +89,10 @@ class SetFunction(ABC):
         """
         return 1.0
 
+    def decomposition(self) -> Decomposition | None:
+        """The parts of which the function is the weighted sum, or the least one; ``None`` if none are known."""
+        return None
+
     @abstractmethod
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of many subsets; ``membership`` (K, n) is True if the element belongs to the subset."""
@@ -110,6 +116,13 @@ class SetFunction(ABC):
         membership = np.zeros((1, self.n), dtype=np.bool_)
         membership[0, check_subset("subset", subset, self.n)] = True
         return float(checked_values(self, membership)[0])
+
+    def values_of(self, sets: Sequence[Iterable[int]]) -> FloatArray:
+        """(K,) values of many subsets, each given by its element indices, in one batch. Indices are not checked."""
+        membership = np.zeros((len(sets), self.n), dtype=np.bool_)
+        for row, elements in zip(membership, sets, strict=True):
+            row[list(elements)] = True
+        return checked_values(self, membership)
 
     def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
         """(C,) values ``f(base + {e})`` for each candidate ``e``.

@@ -130,6 +130,9 @@ class CriterionParts(ProofParts):
     compiled_code: ClassVar[int | None] = None
     """Its number in the compiled loops (``native/src/team.h``), if it is there."""
 
+    is_least_of_targets: ClassVar[bool] = False
+    """Whether the value is that of the target where it is least, as with the worst target's criterion."""
+
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         if {"criterion", "value", "gradient"} & set(vars(cls)):
@@ -159,6 +162,23 @@ class CriterionParts(ProofParts):
     def value(self, posterior_information: FloatArray) -> FloatArray:
         """Value as a concave function of the posterior information: (..., M, d, d) -> (...); a sum over targets."""
         return np.asarray((self._baseline - self.criterion(posterior_information)).sum(axis=-1))
+
+    def target_criterion(self, matrices: FloatArray, target: int) -> FloatArray:
+        """(K,) weighted criterion of one target for its posterior information (K, d, d)."""
+        points = np.tile(self.prior_information, (len(matrices), 1, 1, 1))
+        points[:, target] = matrices
+        return self.criterion(points)[:, target]
+
+    def largest_marginals(self) -> FloatArray:
+        """(n, M) no element takes more off one target's criterion; alone if submodular, else all together."""
+        slack = ROUNDING * self.prior_magnitude
+        before = self.criterion(self.prior_information)
+        if self.is_submodular:
+            return np.asarray(
+                (before - self.criterion(self.prior_information + self.information)) * (1 + ROUNDING) + slack
+            )
+        everything = before - self.criterion(self.prior_information + self.information.sum(axis=0))
+        return np.tile(everything * (1 + ROUNDING) + slack, (self.n, 1))
 
     @property
     def prior_criterion(self) -> float | None:

@@ -18,11 +18,14 @@ from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, 
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
 from ratt_opt.setfunctions.rounding_errors import inverse_error
+from ratt_opt.setfunctions.target_parts import TargetParts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from numpy.typing import ArrayLike
+
+    from ratt_opt.setfunctions.decomposition import Decomposition
 
 __all__ = ["InformationObjective", "from_triangles", "packed", "symmetric_inverse", "triangles"]
 
@@ -132,6 +135,25 @@ class InformationObjective(CriterionParts):
         other.condition = readonly(other._condition())
         other._singletons = None
         return other
+
+    def decomposition(self) -> Decomposition | None:
+        """The targets; ``None`` if the criterion states another value than the sum or the least over targets."""
+        if self.is_least_of_targets:
+            return TargetParts(self, top=np.full(self.n_targets, self._baseline.max()), is_sum=False)
+        if self.states("value") or self.states("combine"):
+            return None
+        return TargetParts(self, top=self._baseline, is_sum=True)
+
+    def criterion_of_one(self, matrices: FloatArray, target: int) -> FloatArray:
+        """(K,) weighted criterion of one target for its posterior information (K, d, d), by the formula for one target.
+
+        For criteria without data of targets beside the weights and ``output``.
+        """
+        one, only = copy(self), slice(target, target + 1)
+        one.weights = self.weights[only]
+        if (output := getattr(self, "output", None)) is not None:
+            one.output = output[only]  # type: ignore[attr-defined]
+        return one.criterion(matrices[:, None])[:, 0]
 
     def posterior_information(self, subset: IntArray) -> FloatArray:
         """(M, d, d) ``Lambda(S)`` of the given distinct elements, added in ascending order."""

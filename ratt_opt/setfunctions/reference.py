@@ -6,7 +6,15 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, check_integer, readonly
+from ratt_opt._validation import (
+    BoolArray,
+    FloatArray,
+    IntArray,
+    check_finite,
+    check_integer,
+    check_nonnegative,
+    readonly,
+)
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SizedFunction
 
@@ -15,14 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-__all__ = ["ConcaveOfModular", "Coverage", "Cut", "FacilityLocation", "Modular", "PartitionMatroidRank"]
-
-
-def _nonnegative(argument: str, value: ArrayLike, ndim: int) -> FloatArray:
-    array = check_finite(argument, value, ndim=ndim)
-    if (array < 0).any():
-        raise InputError(argument, "must not be negative", float(array.min()))
-    return array
+__all__ = ["ConcaveOfModular", "Cut", "Modular", "PartitionMatroidRank"]
 
 
 class Modular(SizedFunction):
@@ -41,29 +42,6 @@ class Modular(SizedFunction):
         return membership @ self.weights
 
 
-class Coverage(SizedFunction):
-    """``f(S) =`` total weight of the items that some element of ``S`` covers.
-
-    ``covers`` : (n, items) truth values; ``item_weights`` : (items,) non-negative. InputError : it is not so.
-    """
-
-    __slots__ = ("covers", "item_weights")
-
-    is_non_decreasing: ClassVar[bool] = True
-    is_submodular: ClassVar[bool] = True
-
-    def __init__(self, covers: ArrayLike, item_weights: ArrayLike) -> None:
-        self.covers: BoolArray = readonly(np.asarray(covers, dtype=np.bool_))
-        self.item_weights: FloatArray = _nonnegative("item_weights", item_weights, 1)
-        if self.covers.ndim != 2 or self.covers.shape[1] != len(self.item_weights):
-            raise InputError("covers", f"must have shape (n, {len(self.item_weights)})", f"shape {self.covers.shape}")
-        self._n = len(self.covers)
-
-    def evaluate(self, membership: BoolArray) -> FloatArray:
-        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
-        return ((membership.astype(np.float64) @ self.covers) > 0) @ self.item_weights
-
-
 class PartitionMatroidRank(SizedFunction):
     """Weighted rank: the heaviest part of ``S`` with at most ``capacity[b]`` elements of each block ``b``.
 
@@ -77,7 +55,7 @@ class PartitionMatroidRank(SizedFunction):
     is_submodular: ClassVar[bool] = True
 
     def __init__(self, weights: ArrayLike, block: ArrayLike, capacity: ArrayLike) -> None:
-        self.weights: FloatArray = _nonnegative("weights", weights, 1)
+        self.weights: FloatArray = check_nonnegative("weights", weights, ndim=1)
         self.capacity: IntArray = readonly(np.asarray(capacity, dtype=np.int64))
         self.block: IntArray = readonly(np.asarray(block, dtype=np.int64))
         if self.block.shape != self.weights.shape:
@@ -99,30 +77,6 @@ class PartitionMatroidRank(SizedFunction):
         return value
 
 
-class FacilityLocation(SizedFunction):
-    """``f(S) = sum over customers of the best utility any element of S has for it`` (0 without one).
-
-    ``utility`` : (n, customers) non-negative. InputError : an entry is negative or not finite.
-    """
-
-    __slots__ = ("utility",)
-
-    is_non_decreasing: ClassVar[bool] = True
-    is_submodular: ClassVar[bool] = True
-
-    def __init__(self, utility: ArrayLike) -> None:
-        self.utility: FloatArray = _nonnegative("utility", utility, 2)
-        self._n = len(self.utility)
-
-    def evaluate(self, membership: BoolArray) -> FloatArray:
-        """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
-        best = np.zeros((len(membership), self.utility.shape[1]))
-        for e in range(self.n):
-            rows = membership[:, e]
-            best[rows] = np.maximum(best[rows], self.utility[e])
-        return np.asarray(best.sum(axis=1))
-
-
 class Cut(SizedFunction):
     """``f(S) =`` weight of the edges between ``S`` and the rest: submodular, symmetric, not monotone.
 
@@ -132,7 +86,7 @@ class Cut(SizedFunction):
     __slots__ = ("weights",)
 
     def __init__(self, weights: ArrayLike) -> None:
-        self.weights: FloatArray = _nonnegative("weights", weights, 2)
+        self.weights: FloatArray = check_nonnegative("weights", weights, ndim=2)
         if self.weights.shape[0] != self.weights.shape[1]:
             raise InputError("weights", "must be square", f"shape {self.weights.shape}")
         if (self.weights != self.weights.T).any():
@@ -155,7 +109,7 @@ class ConcaveOfModular(SizedFunction):
     __slots__ = ("shape", "weights")
 
     def __init__(self, weights: ArrayLike, shape: Callable[[FloatArray], FloatArray] = np.sqrt) -> None:
-        self.weights: FloatArray = _nonnegative("weights", weights, 1)
+        self.weights: FloatArray = check_nonnegative("weights", weights, ndim=1)
         self.shape, self._n = shape, len(self.weights)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

@@ -13,15 +13,9 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt.setfunctions.best_elements import Coverage, FacilityLocation
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.reference import (
-    ConcaveOfModular,
-    Coverage,
-    Cut,
-    FacilityLocation,
-    Modular,
-    PartitionMatroidRank,
-)
+from ratt_opt.setfunctions.reference import ConcaveOfModular, Cut, Modular, PartitionMatroidRank
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -34,6 +34,7 @@ class LogDetObjective(InformationObjective):
     unit: ClassVar[str] = "nat"
     is_submodular: ClassVar[bool] = True
     compiled_code: ClassVar[int | None] = 1
+    target_criterion = InformationObjective.criterion_of_one
 
     @property
     def rounding(self) -> float:

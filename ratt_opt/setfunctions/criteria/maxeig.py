@@ -23,7 +23,7 @@ from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import eigenvalues as eigenvalues_of
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
 from ratt_opt.setfunctions.criterion_parts import Tangent
-from ratt_opt.setfunctions.information import symmetric_inverse
+from ratt_opt.setfunctions.information import InformationObjective, symmetric_inverse
 from ratt_opt.setfunctions.planar_levels import PlanarLevels
 
 if TYPE_CHECKING:
@@ -48,6 +48,8 @@ class MaxEigenvalueObjective(StateCriterion):
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 2
     error_scale = StateCriterion.error_scale
+    is_least_of_targets: ClassVar[bool] = True
+    target_criterion = InformationObjective.criterion_of_one
 
     @property
     def prior_criterion(self) -> float:
@@ -156,6 +158,10 @@ class MaxEigenvalueObjective(StateCriterion):
         eigenvalues = np.linalg.eigvalsh(self.information)
         return np.clip(eigenvalues[..., 0] * (1 - MARGIN) - MARGIN * eigenvalues[..., -1], 0.0, None)
 
+    def largest_marginals(self) -> FloatArray:
+        """(n, M) by how far one target's own level can rise."""
+        return np.asarray(self.largest_alone() * (1 + MARGIN) + self.rounding)
+
     def largest_alone(self) -> FloatArray:
         """(n, M) no marginal of an element exceeds this if target ``j`` is the worst before it is added."""
         a, level = np.linalg.eigvalsh(self.information)[..., -1].clip(0.0), self.weights / self._baseline
@@ -191,6 +197,9 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
     cut_values = MaxEigenvalueObjective.cut_values
     fenchel_point = MaxEigenvalueObjective.fenchel_point
     marginal_ends = MaxEigenvalueObjective.marginal_ends
+    largest_marginals = MaxEigenvalueObjective.largest_marginals
+    is_least_of_targets: ClassVar[bool] = True
+    target_criterion = InformationObjective.criterion_of_one
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
         """(..., M) weighted largest eigenvalues of the outputs' covariances."""

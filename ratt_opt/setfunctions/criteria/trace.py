@@ -33,7 +33,7 @@ from ratt_opt.setfunctions.criteria.output_covariances import output_traces
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
-from ratt_opt.setfunctions.information import packed, symmetric_inverse
+from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -64,6 +64,7 @@ class TraceObjective(StateCriterion):
     unit: ClassVar[str] = "m²"
     compiled_code: ClassVar[int | None] = 0
     error_scale = StateCriterion.error_scale
+    target_criterion = InformationObjective.criterion_of_one
 
     @property
     def prior_criterion(self) -> float:
@@ -111,16 +112,20 @@ class TraceObjective(StateCriterion):
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points."""
-        return self._ends(np.asarray(np.linalg.eigvalsh(self.prior)[:, -1], dtype=np.float64))
+        return np.zeros(self.n), np.asarray(self.largest_marginals().sum(axis=-1))
 
-    def _ends(self, largest: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def largest_marginals(self) -> FloatArray:
+        """(n, M) the larger of both kinds of extreme points."""
+        return self._largest_marginals(np.asarray(np.linalg.eigvalsh(self.prior)[:, -1], dtype=np.float64))
+
+    def _largest_marginals(self, largest: FloatArray) -> FloatArray:
         """The same, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
         values, vectors = np.linalg.eigh(self.prior)
         root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
         q = _upper_eigenvalues(root, self.information).clip(0.0)
         lower_rank = self.weights * largest * (q / (1 + q)).sum(axis=-1)
         alone = self.criterion(self.prior_information) - self.criterion(self.prior_information + self.information)
-        return np.zeros(self.n), np.asarray(np.maximum(alone, lower_rank).sum(axis=-1) * (1 + MARGIN))
+        return np.asarray(np.maximum(alone, lower_rank) * (1 + MARGIN))
 
     @property
     def output_square(self) -> FloatArray:
@@ -186,6 +191,7 @@ class OutputTraceObjective(TraceObjective):
     output: FloatArray
     stated = StateCriterion.stated
     error_scale = StateCriterion.error_scale
+    target_criterion = InformationObjective.criterion_of_one
     marginal_minorant = TraceObjective.marginal_minorant
 
     @property
@@ -224,10 +230,12 @@ class OutputTraceObjective(TraceObjective):
         rows: list[Any] = self._fenchel(point).reshape(len(point), -1).tolist()
         return rows
 
-    def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
-        """0, and the larger of both kinds of extreme points, with ``lambda_max(C P0 C')`` for those of lower rank."""
+    marginal_ends = TraceObjective.marginal_ends
+
+    def largest_marginals(self) -> FloatArray:
+        """(n, M) the larger of both kinds of extreme points, with ``lambda_max(C P0 C')`` for those of lower rank."""
         outputs = self.output @ self.prior @ np.swapaxes(self.output, -1, -2)
-        return self._ends(np.asarray(np.linalg.eigvalsh(outputs)[:, -1], dtype=np.float64))
+        return self._largest_marginals(np.asarray(np.linalg.eigvalsh(outputs)[:, -1], dtype=np.float64))
 
     def _fenchel(self, point: FloatArray) -> FloatArray:
         """(..., M, d, q) ``L^{-1} C'``."""
