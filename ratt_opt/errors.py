@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 __all__ = ["FileFormatError", "InputError", "ProofError", "UndecidedError", "printable"]
 
 _LONGEST_VALUE = 80
+_LITERAL = re.compile(
+    r"[-+]?(\d[\d_]*\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?([nN][aA][nN]|[iI]nf|[iI]nfinity)|[Tt]rue|[Ff]alse|None|null"
+)
+"""Text of a number or a constant."""
 
 
 def printable(text: str) -> str:
@@ -16,7 +22,10 @@ def printable(text: str) -> str:
 
 
 def _shown(value: object) -> str:
+    """The value on one line; text that would read as a number, a constant or other text is quoted."""
     text = printable(str(value)) or repr(value)
+    if isinstance(value, str) and (value != value.strip() or _LITERAL.fullmatch(text)):
+        text = printable(repr(str(value)))
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
 
 

@@ -180,7 +180,9 @@ def commands_in_text() -> list[tuple[str, str]]:
         tables = re.findall(r"<!-- table: (.*?) -->", text)
         prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
         inline = re.findall(r"`((?:\.venv/bin/)?(?:ratt-opt|python -m analysis)[^`]*)`", prose)
-        found += [(page.name, command) for command in (*marked, *tables, *inline)]
+        rows = re.findall(r"^\| `(ratt-opt [a-z]+)[^`]*`(.*)$", prose, flags=re.MULTILINE)
+        listed = [f"{command} {option}" for command, row in rows for option in re.findall(r"`(--[a-z-]+)", row)]
+        found += [(page.name, command) for command in (*marked, *tables, *inline, *listed)]
     return sorted(set(found))
 
 

@@ -52,7 +52,8 @@ def new(
         typer.Option(
             "--graph",
             help="Family of a random network: dense, disk-12, disk-6, small-world or hubs. "
-            "Or a graph file, whose nodes are the robots: .graphml, .gml, .json (node-link), .edgelist, .edges, .txt.",
+            "Or a graph file, whose nodes are the robots: .graphml, .gml, .gexf, .json (node-link), "
+            ".edgelist, .edges, .txt.",
         ),
     ] = None,
     mrclam: Annotated[Path | None, typer.Option("--mrclam", help="Folder of the MRCLAM dataset.")] = None,

@@ -1,29 +1,39 @@
-"""Graph files of other programs, by networkx's readers: GraphML, GML, JSON node-link, lists of edges."""
+"""Graph files of other programs, by networkx's readers: GraphML, GML, GEXF, JSON node-link; and lists of edges."""
 
 from __future__ import annotations
 
 from codecs import BOM_UTF8
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
 
 import networkx as nx
 
 from ratt_opt.errors import FileFormatError
+from ratt_opt.scenario.edge_list import parse_edge_list
 from ratt_opt.scenario.files import read_bytes, read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
 __all__ = ["GRAPH_FILES", "read_graph"]
 
+PLACES = ("graphics", "position", "pos")
+"""Attributes in which Gephi and others keep where a node is drawn: a record of x and y, or a list of them."""
+
 
 def read_graph(path: str | Path) -> nx.Graph:
-    """Read a graph file; the ending of its name says what it is (``GRAPH_FILES``).
+    """Read a network as it stands in a file; the ending of its name says what it is (``GRAPH_FILES``).
+
+    The graph is directed and has parallel edges if the file says so; :func:`communication_graph` makes it simple and
+    numbers its nodes. Nodes and edges have the file's attributes: ``label`` or ``name``, ``weight``. Where a node is
+    drawn (GEXF, Gephi's GML, ``pos``) becomes its attributes ``x`` and ``y``.
 
     Raises
     ------
-    FileFormatError : the ending is unknown, or the file cannot be read as what it says.
+    FileFormatError : the ending is unknown, or the file cannot be read as what it says: a node is given twice, an edge
+        ends at a node that is not given, a list of edges is no bare one (:mod:`ratt_opt.scenario.edge_list`).
     """
     path = Path(path)
     kind, read = GRAPH_FILES.get(path.suffix.lower(), ("", None))
@@ -43,11 +53,56 @@ def read_graph(path: str | Path) -> nx.Graph:
         raise FileFormatError(str(path), f"must be {kind}", "elements nested too deeply") from None
     if not isinstance(graph, nx.Graph) or not len(graph):
         raise FileFormatError(str(path), "must hold a graph with at least one node", "none")
+    for attributes in graph.nodes.values():
+        attributes |= {k: v for k, v in _drawn_at(attributes).items() if k not in attributes}
     return graph
 
 
+def _drawn_at(attributes: dict[str, Any]) -> dict[str, Any]:
+    """``x`` and ``y`` of the first of ``PLACES`` that has both."""
+    viewed = attributes.get("viz")
+    for given in (*map(attributes.get, PLACES), viewed.get("position") if isinstance(viewed, dict) else None):
+        if isinstance(given, dict) and {"x", "y"} <= given.keys():
+            return {"x": given["x"], "y": given["y"]}
+        if isinstance(given, (list, tuple)) and len(given) in {2, 3}:
+            return {"x": given[0], "y": given[1]}
+    return {}
+
+
 def _graphml(path: Path) -> nx.Graph:
-    return nx.read_graphml(BytesIO(read_bytes(path)))
+    content = read_bytes(path)
+    _check_xml(path, content)
+    return nx.read_graphml(BytesIO(content))
+
+
+def _gexf(path: Path) -> nx.Graph:
+    content = read_bytes(path)
+    _check_xml(path, content)
+    return nx.read_gexf(BytesIO(content))
+
+
+def _check_xml(path: Path, content: bytes) -> None:
+    """networkx reads the first of several graphs, and makes the nodes that edges name."""
+    by_tag: dict[str, list[ElementTree.Element]] = {}
+    for element in ElementTree.fromstring(content).iter():
+        by_tag.setdefault(element.tag.rpartition("}")[2], []).append(element)
+    nodes = by_tag.get("node", [])
+    if len(by_tag.get("graph", [])) > 1 and not any(node.get("yfiles.foldertype") for node in nodes):
+        raise FileFormatError(str(path), "must hold one graph", "more")
+    ends = (edge.get(side) for edge in by_tag.get("edge", []) for side in ("source", "target"))
+    _check_ends(path, [node.get("id") for node in nodes], ends)
+
+
+def _check_ends(path: Path, nodes: Iterable[Any], ends: Iterable[Any]) -> None:
+    """Refuse a node that is given twice, and an edge of a node that is not given."""
+    known = set()
+    for node in nodes:
+        if node in known:
+            raise FileFormatError(str(path), "must give each node once", node)
+        known.add(node)
+    for end in ends:
+        if end not in known:
+            raise FileFormatError(str(path), "must have edges between nodes that it gives", end)
 
 
 def _gml(path: Path) -> nx.Graph:
@@ -59,19 +114,19 @@ def _node_link(path: Path) -> nx.Graph:
     document = read_json(path)
     if not isinstance(document, dict):
         raise FileFormatError(str(path), "must be JSON node-link", type(document).__name__)
-    return nx.node_link_graph(document, edges="edges" if "edges" in document else "links")
+    edges = "edges" if "edges" in document else "links"
+    graph = nx.node_link_graph(document, edges=edges)
+    nodes = [_hashable(node.get("id", number)) for number, node in enumerate(document["nodes"])]
+    _check_ends(path, nodes, (_hashable(edge[side]) for edge in document[edges] for side in ("source", "target")))
+    return graph
+
+
+def _hashable(node: Any) -> Any:
+    return tuple(map(_hashable, node)) if isinstance(node, list) else node
 
 
 def _edge_list(path: Path) -> nx.Graph:
-    """Two nodes a line, what follows is passed over; directed, as lists often have each edge in both directions."""
-    graph = nx.MultiDiGraph()
-    for number, line in enumerate(_text(path).splitlines(), start=1):
-        words = line.partition("#")[0].split()
-        if len(words) == 1:
-            raise FileFormatError(f"{path} line {number}", "must name two nodes", words[0])
-        if words:
-            graph.add_edge(*words[:2])
-    return graph
+    return parse_edge_list(_text(path), str(path))
 
 
 def _text(path: Path) -> str:
@@ -81,6 +136,7 @@ def _text(path: Path) -> str:
 GRAPH_FILES: dict[str, tuple[str, Callable[[Path], nx.Graph]]] = {
     ".graphml": ("GraphML", _graphml),
     ".gml": ("GML", _gml),
+    ".gexf": ("GEXF", _gexf),
     ".json": ("JSON node-link", _node_link),
     ".edgelist": ("a list of edges", _edge_list),
     ".edges": ("a list of edges", _edge_list),

@@ -95,10 +95,21 @@ def _places(team: nx.Graph, side: float) -> tuple[FloatArray, str] | None:
 
 
 def _place(attributes: dict[str, object], keys: tuple[str, str]) -> tuple[float, float] | None:
-    x, y = (attributes.get(key) for key in keys)
-    if isinstance(x, (int, float)) and isinstance(y, (int, float)) and max(abs(x), abs(y)) < FARTHEST:
-        return float(x), float(y)
-    return None
+    try:
+        x, y = (float(_number(attributes.get(key))) for key in keys)
+    except (TypeError, ValueError):
+        return None
+    return (x, y) if abs(x) < FARTHEST and abs(y) < FARTHEST else None
+
+
+def _number(value: object) -> float | str:
+    """A number, or text that may hold one, as yEd's files have it.
+
+    TypeError : neither.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise TypeError
+    return value
 
 
 def _between(team: nx.Graph, known: dict[int, tuple[float, float]]) -> FloatArray:

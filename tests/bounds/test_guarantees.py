@@ -171,7 +171,7 @@ def test_what_does_not_apply_is_said_with_its_reason():
         (lambda *_: ro.pattern_free_bound(k=1.5), "k must be in"),
         (lambda *_: ro.pattern_free_bound(c=float("nan")), "c must be a finite number"),
         (lambda *_: ro.pattern_free_bound(k=True), "k must be a finite number; got True"),
-        (lambda *_: ro.pattern_free_bound(k="0.5"), "k must be a finite number; got 0.5"),
+        (lambda *_: ro.pattern_free_bound(k="0.5"), "k must be a finite number; got '0.5'"),
         (lambda *_: ro.theorem1_bound(-1, k=0.5), "alpha_cs"),
         (lambda *_: ro.all_bait_group_bound(0, k=0.5), "size"),
     ],

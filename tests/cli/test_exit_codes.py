@@ -151,6 +151,17 @@ def test_text_from_users_is_shown_as_text(capsys: pytest.CaptureFixture[str]) ->
         assert str(error).isprintable()
 
 
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        *((text, f"'{text}'") for text in ("1", "1.5e3", "NaN", "True", " a", "")),
+        *((value, str(value)) for value in ("a1", "3 rows", "none", 1, None, ["1"])),
+    ],
+)
+def test_text_that_reads_as_another_value_is_quoted(value: object, shown: str) -> None:
+    assert str(InputError("x", "must be", value)) == f"x must be; got {shown}"
+
+
 def test_names_of_files_are_shown_as_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("\x1b[2Jx", "\u202ex", "\udc80x", "[/b]x", "a\0b"):
         assert run(["bound", str(tmp_path / name), "--out", str(tmp_path / "o")]) == 2

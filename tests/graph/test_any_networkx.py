@@ -58,11 +58,31 @@ def test_order_and_names():
     graph = nx.MultiDiGraph([("r10", "r2"), ("r2", "r10"), (3, "r2"), (3, "r2"), (3, 3), ((0, 1), 1.5)])
     graph.nodes["r2"]["label"] = "Győr\nwest"
     graph.nodes[3].update(label="", name="three", x=1.0)
+    graph.nodes["r10"]["label"] = 10
     found = ro.communication_graph(graph)
     assert [found.nodes[i]["node"] for i in found] == [1.5, 3, "r2", "r10", (0, 1)]
-    assert [found.nodes[i]["name"] for i in found] == ["1.5", "three", "Győr west", "r10", "(0, 1)"]
+    assert [found.nodes[i]["name"] for i in found] == ["1.5", "three", "Győr west", "10", "(0, 1)"]
     assert sorted(found.edges(data="count")) == [(0, 4, 1), (1, 2, 2), (2, 3, 1)]
     assert found.nodes[1]["x"] == 1.0
+
+
+def test_weights_of_parallel_edges_add_up_and_of_two_directions_the_heavier_counts():
+    graph = nx.MultiDiGraph()
+    graph.add_weighted_edges_from(
+        [("a", "b", 2.0), ("a", "b", 3.0), ("b", "a", 4.5), ("c", "a", 0.25), ("b", "b", 9.0)]
+    )
+    graph.add_edge("c", "b")
+    found = ro.communication_graph(graph, weight="weight")
+    assert sorted(found.edges(data="weight")) == [(0, 1, 5.0), (0, 2, 0.25), (1, 2, 1.0)]
+    assert "weight" not in ro.communication_graph(graph).edges[0, 1]
+    both = ro.communication_graph(nx.MultiGraph(graph.edges(data=True)), weight="weight")
+    assert both.edges[0, 1]["weight"] == 9.5
+
+
+@pytest.mark.parametrize("weight", [-1.0, float("nan"), "2", None])
+def test_weights_that_are_none_are_refused(weight):
+    with pytest.raises(ro.InputError, match="weight of the edge between a and b must be a finite number >= 0"):
+        ro.communication_graph(nx.Graph([("a", "b", {"weight": weight})]), weight="weight")
 
 
 def test_what_is_refused():

@@ -55,7 +55,7 @@ def test_whole_numbers_count_as_numbers() -> None:
     [
         (True, "must be a number; got True"),
         (np.bool_(True), "must be a number"),
-        ("1", "must be a number; got 1"),
+        ("1", "must be a number; got '1'"),
         (None, "must be a number"),
         (float("nan"), "must be finite; got nan"),
         (1e101, r"must be <= 1e\+100"),

@@ -23,8 +23,22 @@ WRITERS = {
     ".edgelist": nx.write_edgelist,
     ".edges": nx.write_edgelist,
     ".txt": nx.write_edgelist,
+    ".gexf": nx.write_gexf,
     ".json": lambda graph, path: path.write_text(json.dumps(nx.node_link_data(graph, edges="links")), encoding="utf-8"),
 }
+
+
+GRAPHML = '<graphml xmlns="http://graphml.graphdrawing.org/xmlns">{}</graphml>'
+GEPHI_GML = """graph [
+  node [ id 0 label 7 graphics [ x -1.0 y 0.0 z 0.0 w 10.0 h 10.0 fill "#999999" ] ]
+  node [ id 1 label "b" graphics [ x 3.0 y 2.0 z 0.0 w 10.0 h 10.0 fill "#999999" ] ]
+  edge [ id 0 source 0 target 1 value 1.0 ]
+]"""
+GEPHI_GEXF = """<gexf xmlns="http://www.gexf.net/1.2draft" xmlns:viz="http://www.gexf.net/1.2draft/viz" version="1.2">
+<graph defaultedgetype="undirected"><nodes>
+<node id="0" label="7"><viz:position x="-1.0" y="0.0"/></node>
+<node id="1" label="b"><viz:position x="3.0" y="2.0"/></node>
+</nodes><edges><edge source="0" target="1"/></edges></graph></gexf>"""
 
 
 def provider_network(rng: np.random.Generator, directed: bool) -> nx.Graph:
@@ -82,6 +96,24 @@ def test_without_places_robots_are_placed_at_random_and_it_is_said():
         ("a.edgelist", "one\n", "must name two nodes"),
         ("a.txt", "# nothing\n", "at least one node"),
         ("a.csv", "1,2\n", "must end in"),
+        ("a.txt", "source target\n1 2\n", "a.txt line 1 must be an edge, not a header row"),
+        (
+            "a.json",
+            '{"nodes": [{"id": "a"}, {"id": "b"}], "links": [{"source": 0, "target": 1}]}',
+            "between nodes that it",
+        ),
+        ("a.json", '{"nodes": [{"id": "a"}, {"id": "a"}], "links": []}', "must give each node once"),
+        (
+            "a.graphml",
+            GRAPHML.format('<graph><node id="a"/><edge source="a" target="b"/></graph>'),
+            "between nodes that it",
+        ),
+        (
+            "a.graphml",
+            GRAPHML.format('<graph><node id="a"/></graph><graph><node id="b"/></graph>'),
+            "must hold one graph",
+        ),
+        ("a.gexf", "<gexf>", "must be GEXF"),
     ],
 )
 def test_other_files_are_refused_in_one_line(name: str, content: str, rule: str, tmp_path: Path):
@@ -90,6 +122,36 @@ def test_other_files_are_refused_in_one_line(name: str, content: str, rule: str,
     with pytest.raises(FileFormatError, match=rule) as caught:
         read_graph(path)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.gml", GEPHI_GML),
+        ("a.gexf", GEPHI_GEXF),
+        (
+            "a.json",
+            '{"nodes": [{"id": 7, "pos": [0, 0]}, {"id": "b", "x": 4, "y": 2}], '
+            '"links": [{"source": 7, "target": "b"}]}',
+        ),
+        (
+            "a.graphml",
+            GRAPHML.format(
+                '<key id="d" for="node" attr.name="x" attr.type="string"/><key id="e" for="node" attr.name="y"/>'
+                '<graph><node id="7"><data key="d">0</data><data key="e">0</data></node>'
+                '<node id="b"><data key="d">4.0</data><data key="e">2</data></node>'
+                '<edge source="7" target="b"/></graph>'
+            ),
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:No key type")
+def test_names_and_places_of_drawn_graphs_are_kept(name: str, content: str, tmp_path: Path):
+    path = tmp_path / name
+    path.write_text(content, encoding="utf-8")
+    team = graph_scenario(read_graph(path), 2, alpha_s=0, alpha_c=0, seed=0, side=40.0)
+    assert [(robot.name, robot.x, robot.y) for robot in team.robots] == [("7", 0.0, 0.0), ("b", 40.0, 20.0)]
+    assert any("placed by x and y" in note for note in team.notes)
 
 
 def test_no_graph_is_refused():

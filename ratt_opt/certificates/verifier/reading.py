@@ -36,7 +36,7 @@ def _refusal(where: str, rule: str, value: object) -> FileFormatError:
 
 def _finite(text: str) -> float:
     if not math.isfinite(value := float(text)):
-        raise _refusal("number", "must be finite", text)
+        raise _refusal("number", "must be finite", f"the number {text}")
     return value
 
 

@@ -54,7 +54,7 @@ FILES = {
     "format must be": lambda _: "[]",
     "must be a number": lambda d: json.dumps({**d, "claim": {"lower": None, "upper": 1.0}}),
     "must be an integer": lambda d: json.dumps({**d, "plan": [0.5, 2, 4]}),
-    "must be finite; got 1e999": lambda d: json.dumps({**d, "claim": 0}).replace('"claim": 0', '"claim": 1e999'),
+    "finite; got the number 1e999": lambda d: json.dumps({**d, "claim": 0}).replace('"claim": 0', '"claim": 1e999'),
     "claim lower must be a number": lambda d: json.dumps({**d, "claim": {"lower": 10**60, "upper": 1.0}}),
     "claim lower": lambda d: json.dumps({**d, "claim": {"lower": True, "upper": 1.0}}),
 }
