@@ -41,13 +41,13 @@ FIRST_NODES = 100
 NEARLY, MORE_NODES = 5e-3, 500
 """Relative width at which that tree is nearly done, and then goes on to this many nodes: log-det, (3, 107) and (5,
 107), end after 220 and 471 nodes, and not within 15 seconds if they are given up at 100."""
-TREE_NODES, GROWTH = 100, 1.5
+TREE_NODES, TREE_GROWTH = 100, 1.5
 """Nodes of a later tree before it is given up, and how many times as many the next one then has."""
 SUMS = frozenset((TraceObjective.compiled_code, LogDetObjective.compiled_code))
 """Criteria that are sums over targets."""
 UNSEEN = 0.25
 """Least share of pairs of an element and a target without information for a search in depth."""
-TURN, GROWTH = 20, 2.0
+TURN, TURN_GROWTH = 20, 2.0
 """Nodes of the concave search's second turn, after its root, and how many times as many each later one has."""
 NODES_IN_DEPTH = 10
 """Nodes that the search in depth has for each of the concave one's."""
@@ -135,7 +135,7 @@ class RestartedSearch:
     def _begin_next(self) -> None:
         """Put a tree of more nodes in the place of the one in work."""
         if self._current is not self.first:
-            self._tree_nodes *= GROWTH
+            self._tree_nodes *= TREE_GROWTH
         self._best = self._lowest()
         self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
         self._current = BranchAndBound(self._known, depth_first=True)
@@ -174,7 +174,7 @@ class UpperEnds:
             if turns.budget.nodes == before:  # all that is left is what margins for rounding leave
                 return Stop.GAP
             most = self._turn
-            self._turn *= GROWTH
+            self._turn *= TURN_GROWTH
 
     def _ends(self) -> list[RestartedSearch | SearchByLevels]:
         return [self._concave] if self._in_depth is None else [self._concave, self._in_depth]
