@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.report.palette import look_of
 from ratt_opt.solvers.ratt import greedy, ratt
+from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.instance import Instance
 from ratt_opt.studies.plots import LABELS, LOOKS, bands, new_figure, save
 from ratt_opt.studies.statistics import column, estimate, select
-from ratt_opt.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.plots import LOOKS, new_figure, save
 from ratt_opt.studies.statistics import column, select
-from ratt_opt.studies.study import Case, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

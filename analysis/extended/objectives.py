@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from analysis.extended.ratio_figure import draw_ratios
 from analysis.paper.large_scale import budgets
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.command import Entry, main
-from ratt_opt.studies.study import Case, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

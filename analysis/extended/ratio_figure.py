@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-    from ratt_opt.studies.study import Case
+    from ratt_opt.studies.cases import Case
 
 __all__ = ["draw_ratios"]
 

@@ -8,10 +8,11 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from ratt_opt.studies.cases import Case, Cell
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.plots import bars, new_figure, save
 from ratt_opt.studies.statistics import column, estimate, select
-from ratt_opt.studies.study import Case, Cell, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -19,8 +19,9 @@ import numpy as np
 import ratt_opt as ro
 from ratt_opt._files import write_json
 from ratt_opt.cli import run
+from ratt_opt.studies.cases import Case, Seeds
 from ratt_opt.studies.store import open_journal
-from ratt_opt.studies.study import Case, Seeds, Study, run_trial
+from ratt_opt.studies.study import Study, run_trial
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

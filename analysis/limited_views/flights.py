@@ -13,15 +13,16 @@ from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.scenario.limited_view import SENSORS, limited_view_scenario
 from ratt_opt.scenario.sensor import Sensor, measure
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.command import Entry
-from ratt_opt.studies.study import Case, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray
     from ratt_opt.missions.mission import Mission
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.model import Scenario
-    from ratt_opt.studies.study import Cell, Seeds
+    from ratt_opt.studies.cases import Cell, Seeds
 
 __all__ = ["ENTRIES", "MAIN", "METRICS", "PLANNERS", "STEPS", "STUDIES", "VARIED", "case_of", "scenario_of", "sighted"]
 

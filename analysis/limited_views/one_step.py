@@ -12,7 +12,7 @@ from ratt_opt.studies.command import Entry
 from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
-    from ratt_opt.studies.study import Case, Cell, Seeds
+    from ratt_opt.studies.cases import Case, Cell, Seeds
 
 __all__ = ["ENTRY", "STUDY", "measured"]
 

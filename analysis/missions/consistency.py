@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.studies.study import Case, Cell, Seeds
+    from ratt_opt.studies.cases import Case, Cell, Seeds
 
 LINEARISATIONS: tuple[Linearisation, ...] = ("first order", "second order", "iterated")
 DRAWS = 40

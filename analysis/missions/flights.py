@@ -16,10 +16,11 @@ from ratt_opt.missions.players.planners import MaxMinPlanner, RandomPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.scenario.generator import random_scenario
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.plots import new_figure, points, save
 from ratt_opt.studies.statistics import column, estimate, players, select
-from ratt_opt.studies.study import Case, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
-    from ratt_opt.studies.study import Cell, Seeds
+    from ratt_opt.studies.cases import Cell, Seeds
 
 STEPS = 50
 SIZES = ((5, 8), (10, 15), (20, 20))

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.graph.survivor_sizes import caa
+from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.plots import new_figure, save
-from ratt_opt.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

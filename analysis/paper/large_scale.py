@@ -9,8 +9,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from analysis.paper.comparison_figure import draw_comparison
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.command import Entry, main
-from ratt_opt.studies.study import Case, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -10,12 +10,13 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from analysis.paper.qualitative_figure import common_limits, draw_scene, legend, squared_error
+from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.comparison import DRAWS
 from ratt_opt.studies.instance import Instance
 from ratt_opt.studies.plots import LABELS, new_figure, save
 from ratt_opt.studies.statistics import select
-from ratt_opt.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

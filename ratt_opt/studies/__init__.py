@@ -5,13 +5,14 @@ Open ``study.py`` first: the cases a study compares and what it measures. ``engi
 trial measures; ``results.py``, ``statistics.py``, ``plots.py`` what is made of all; ``command.py`` the command line.
 """
 
+from ratt_opt.studies.cases import Case, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.engine import SweepError, run
 from ratt_opt.studies.instance import ATTACKERS, GRAPHS, PLANNERS, Instance
-from ratt_opt.studies.results import Mean, Results
-from ratt_opt.studies.statistics import Estimate, estimate
+from ratt_opt.studies.results import Results
+from ratt_opt.studies.statistics import Estimate, Mean, estimate
 from ratt_opt.studies.store import read_table
-from ratt_opt.studies.study import Case, Seeds, Study
+from ratt_opt.studies.study import Study
 
 __all__ = [
     "ATTACKERS",

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Attack
-    from ratt_opt.studies.study import Case, Cell, Seeds, Study
+    from ratt_opt.studies.cases import Case, Cell, Seeds
+    from ratt_opt.studies.study import Study
 
 __all__ = ["DRAWS", "measure"]
 

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from concurrent.futures import Executor
 
+    from ratt_opt.studies.cases import Cell
     from ratt_opt.studies.store import Journal
-    from ratt_opt.studies.study import Cell, Study
+    from ratt_opt.studies.study import Study
 
 __all__ = ["SweepError", "run"]
 

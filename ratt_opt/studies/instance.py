@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.simulation import Tracking
     from ratt_opt.solvers.result import MaxMinResult
-    from ratt_opt.studies.study import Case, Seeds
+    from ratt_opt.studies.cases import Case, Seeds
 
 __all__ = ["ATTACKERS", "GRAPHS", "METRICS", "PLANNERS", "Instance"]
 

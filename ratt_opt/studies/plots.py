@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.report.palette import PLANNERS, looks_of
-from ratt_opt.studies.results import headed
+from ratt_opt.studies.statistics import headed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.report.palette import Look
-    from ratt_opt.studies.results import Mean
-    from ratt_opt.studies.statistics import Estimate
+    from ratt_opt.studies.statistics import Estimate, Mean
 
 __all__ = ["IN_TURN", "LABELS", "LOOKS", "bands", "bars", "comparison", "new_figure", "points", "save", "use_palette"]
 

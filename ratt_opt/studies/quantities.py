@@ -18,8 +18,8 @@ from ratt_opt.worst_ratio.ratio import worst_case_ratio
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ratt_opt.studies.cases import Cell
     from ratt_opt.studies.instance import Instance
-    from ratt_opt.studies.study import Cell
 
 __all__ = ["QUANTITIES"]
 

@@ -12,7 +12,7 @@ from ratt_opt._files import output_directory, write_together
 from ratt_opt.errors import InputError
 from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.latex import latex_table
-from ratt_opt.studies.statistics import Estimate, column, estimate, select
+from ratt_opt.studies.statistics import Mean, column, estimate, headed, select
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -22,29 +22,11 @@ if TYPE_CHECKING:
 
     from ratt_opt.studies.study import Study
 
-__all__ = ["Mean", "Results", "headed"]
+__all__ = ["Results"]
 
 AT_LEAST_ZERO = ("value", "proved", "trace", "mse", "rmse", "nees")
 """Metrics that are never negative: neither is what is said of their means."""
-UNITS = {"trace": "m²", "mse": "m²", "rmse": "m"}
-"""Units of metrics; a value has that of its criterion."""
 COLUMNS = ("case", "planner", "attacker", "metric", "mean", "low", "high", "trials")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Mean:
-    """A metric's mean over the trials of a case, with its 95 % interval.
-
-    ``planner``, ``attacker`` : empty for what a study measures once a trial.
-    ``minus`` : the planner whose metric is taken off, trial by trial, or empty.
-    """
-
-    case: str
-    planner: str
-    attacker: str
-    metric: str
-    estimate: Estimate
-    minus: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -194,11 +176,6 @@ class Results:
     def _check(self, argument: str, value: str | None, known: tuple[str, ...] | list[str]) -> None:
         if value is not None and value not in known:
             raise InputError(argument, f"must be {', '.join(known) or 'absent: there is none'}", value)
-
-
-def headed(metric: str) -> str:
-    """A metric with its unit, if that is the same in every study."""
-    return f"{metric} [{UNITS[metric]}]" if metric in UNITS else metric
 
 
 def _records(means: list[Mean]) -> list[dict[str, object]]:

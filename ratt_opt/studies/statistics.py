@@ -15,10 +15,12 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["Estimate", "Verdict", "column", "estimate", "judge", "players", "select"]
+__all__ = ["Estimate", "Mean", "Verdict", "column", "estimate", "headed", "judge", "players", "select"]
 
 LEVEL = 0.95
 """Confidence of every interval."""
+UNITS = {"trace": "m²", "mse": "m²", "rmse": "m"}
+"""Units of metrics; a value has that of its criterion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,22 @@ class Estimate:
         """Return ``mean [low, high]``, times ``scale``, to three digits and no more than twelve decimals."""
         mean, low, high = (round(scale * number, 12) + 0.0 for number in (self.mean, self.low, self.high))
         return f"{mean:+.3g} [{low:+.3g}, {high:+.3g}]"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mean:
+    """A metric's mean over the trials of a case, with its 95 % interval.
+
+    ``planner``, ``attacker`` : empty for what a study measures once a trial.
+    ``minus`` : the planner whose metric is taken off, trial by trial, or empty.
+    """
+
+    case: str
+    planner: str
+    attacker: str
+    metric: str
+    estimate: Estimate
+    minus: str = ""
 
 
 class Verdict(Enum):
@@ -110,3 +128,8 @@ def players(rows: Sequence[Mapping[str, str]], metric: str) -> dict[str, tuple[s
         if of == metric and not any(rest):
             found.setdefault(attacker, []).append(planner)
     return {attacker: tuple(planners) for attacker, planners in found.items()}
+
+
+def headed(metric: str) -> str:
+    """A metric with its unit, if that is the same in every study."""
+    return f"{metric} [{UNITS[metric]}]" if metric in UNITS else metric

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from ratt_opt.studies.study import Cell, Study
+    from ratt_opt.studies.cases import Cell
+    from ratt_opt.studies.study import Study
 
 __all__ = ["Journal", "open_journal", "read_table"]
 

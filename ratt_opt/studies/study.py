@@ -11,9 +11,10 @@ from functools import partial
 from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
-
 from ratt_opt.errors import InputError
+from ratt_opt.studies.cases import Cell, Seeds
+from ratt_opt.studies.instance import ATTACKERS, METRICS, PLANNERS
+from ratt_opt.studies.quantities import QUANTITIES
 from ratt_opt.studies.versions import VERSIONS, hash_of_modules, hash_of_texts
 
 if TYPE_CHECKING:
@@ -23,57 +24,12 @@ if TYPE_CHECKING:
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
     from ratt_opt.scenario.model import Scenario
+    from ratt_opt.studies.cases import Case
 
-__all__ = ["Case", "Cell", "Seeds", "Study", "name_of", "path_of", "run_trial"]
+__all__ = ["Study", "name_of", "path_of", "run_trial"]
 
 COMPARISON = "ratt_opt.studies.comparison:measure"
 """The measure of studies that name no other."""
-Cell = str | int | float
-"""One entry of a row. Floats are written so that they read back exactly."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Case:
-    """One combination of the factors that a study varies.
-
-    ``options`` : further arguments of ``random_scenario``, and fields of its sensor as ``sensor.field``, in
-    ``(name, value)`` pairs; all cases of a study name the same ones.
-    ``graph`` : the communication graph, by its name in :data:`ratt_opt.studies.GRAPHS`.
-    """
-
-    n_robots: int
-    n_targets: int
-    alpha_s: int
-    alpha_c: int
-    objective: str = "trace"
-    graph: str = "complete"
-    options: tuple[tuple[str, Cell], ...] = ()
-
-    @property
-    def name(self) -> str:
-        """The case in one cell: sizes, budgets, and whatever differs from the defaults."""
-        parts = [f"N={self.n_robots} M={self.n_targets} alpha_s={self.alpha_s} alpha_c={self.alpha_c}"]
-        parts += [value for value in (self.objective, self.graph) if value not in {"trace", "complete"}]
-        parts += [f"{name}={value}" for name, value in self.options]
-        return " ".join(parts)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Seeds:
-    """Independent seeds of one trial, shared by all cases so that cases are paired."""
-
-    scenario: int
-    planner: int
-    attacker: int
-    simulation: int
-
-    @classmethod
-    def of(cls, root: int, trial: int) -> Seeds:
-        """Return the seeds of child ``trial`` of ``SeedSequence(root).spawn``; they do not depend on the trials run."""
-        # NumPy documents that the k-th child of spawn() has the spawn key (k,).
-        child = np.random.SeedSequence(root, spawn_key=(trial,))
-        words = (int(s.generate_state(1, np.uint64)[0] >> 1) for s in child.spawn(len(fields(cls))))
-        return cls(**{field.name: word for field, word in zip(fields(cls), words, strict=True)})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,9 +89,6 @@ class Study:
 
     def _check_names(self) -> None:
         """Refuse names that the comparison of planners does not know, before a trial is run."""
-        from ratt_opt.studies.instance import ATTACKERS, METRICS, PLANNERS
-        from ratt_opt.studies.quantities import QUANTITIES
-
         known: dict[str, Collection[str]] = {"planners": PLANNERS, "attackers": ATTACKERS}
         known |= {"metrics": METRICS, "quantities": QUANTITIES}
         for kind, names in known.items():

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import ratt_opt as ro
-from ratt_opt.studies.study import Case, Seeds, Study
+from ratt_opt.studies.cases import Case, Seeds
+from ratt_opt.studies.study import Study
 
 __all__ = ["STUDY", "boldest", "cover", "first_robot"]
 

@@ -20,11 +20,12 @@ import pytest
 
 from ratt_opt import InputError
 from ratt_opt.studies import engine, versions
+from ratt_opt.studies.cases import Case, Seeds
 from ratt_opt.studies.engine import SweepError, run
 from ratt_opt.studies.executors import local_processes, open_executor
 from ratt_opt.studies.progress import Progress
 from ratt_opt.studies.store import open_journal, read_table
-from ratt_opt.studies.study import Case, Seeds, run_trial
+from ratt_opt.studies.study import run_trial
 from tests.studies.toy import STUDY
 
 if TYPE_CHECKING:

@@ -18,11 +18,12 @@ from analysis.extended.guarantees import STUDY as GUARANTEES
 from analysis.extended.guarantees import shares
 from analysis.extended.sensitivity import DEFAULTS, VARIANTS
 from ratt_opt import AttackResult, Problem, worst_case_attack, worst_case_ratio
+from ratt_opt.studies.cases import Case, Seeds
 from ratt_opt.studies.instance import Instance
 from ratt_opt.studies.quantities import curvature_class
 from ratt_opt.studies.statistics import column, select
 from ratt_opt.studies.store import read_table
-from ratt_opt.studies.study import Case, Seeds, run_trial
+from ratt_opt.studies.study import run_trial
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDIES = ("guarantees", "graphs", "budgets", "sensitivity")

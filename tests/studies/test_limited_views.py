@@ -15,11 +15,11 @@ import ratt_opt as ro
 from analysis.limited_views import flights, one_step, page
 from analysis.limited_views.flights import case_of, figures_of, scenario_of, sighted
 from analysis.limited_views.verdicts import Outcome, outcome, relative_change
+from ratt_opt.studies.cases import Seeds
 from ratt_opt.studies.engine import run
 from ratt_opt.studies.progress import Progress
 from ratt_opt.studies.statistics import column, estimate, select
 from ratt_opt.studies.store import read_table
-from ratt_opt.studies.study import Seeds
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from analysis.missions import consistency, exact_flights, flights
-from ratt_opt.studies.study import Seeds
+from ratt_opt.studies.cases import Seeds
 
 if TYPE_CHECKING:
     import pytest

@@ -9,11 +9,12 @@ from types import SimpleNamespace
 import pytest
 
 from ratt_opt import InputError
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.engine import run
 from ratt_opt.studies.executors import local_processes
 from ratt_opt.studies.progress import Progress
 from ratt_opt.studies.store import read_table
-from ratt_opt.studies.study import Case, Study, path_of, run_trial
+from ratt_opt.studies.study import Study, path_of, run_trial
 from tests.studies import toy
 from tests.studies.own import STUDY, boldest
 

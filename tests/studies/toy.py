@@ -7,7 +7,8 @@ import time
 
 import numpy as np
 
-from ratt_opt.studies.study import Case, Cell, Seeds, Study
+from ratt_opt.studies.cases import Case, Cell, Seeds
+from ratt_opt.studies.study import Study
 
 __all__ = ["STUDY", "die", "fail", "measure", "raise_at_once"]
 

@@ -23,7 +23,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.planar.contexts import along, levels
-from ratt_opt.curvatures.planar.inequalities import MARGIN
 from ratt_opt.highs import LinearProgram, Rows
 
 if TYPE_CHECKING:
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.curvatures.planar.contexts import Options
 
-__all__ = ["Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
+__all__ = ["MARGIN", "Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
 
 ROUNDS = 12
 """Most times the violated cuts are added for one slope."""
@@ -43,6 +42,8 @@ FIRST_CUTS = 10
 """Targets that get a cut if there is none to start from."""
 SMALLEST_SHARE = 1e-9
 """Targets with a smaller share of the average to start from get no cut at once."""
+MARGIN = 1e-12
+"""Safety margin for rounding of a ceiling, relative to the sum of the absolute terms."""
 EDGES = 2
 EDGE_COST = 100.0
 """Cap on the multipliers of a sector's edges."""

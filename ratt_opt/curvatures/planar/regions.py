@@ -20,8 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.curvatures.planar.ceilings import ceilings
 from ratt_opt.curvatures.planar.contexts import levels
-from ratt_opt.curvatures.planar.inequalities import ceilings, least_enough, least_marginal, most_enough, most_marginal
+from ratt_opt.curvatures.planar.inequalities import least_enough, least_marginal, most_enough, most_marginal
 from ratt_opt.curvatures.planar.level_program import Sector, own_direction
 
 if TYPE_CHECKING:

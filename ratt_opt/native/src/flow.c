@@ -1,5 +1,5 @@
 /* The group of least cost of links and robots, by a flow of most capacity: Dinic, Soviet Mathematics Doklady 11 (1970). */
-#include "pricing.h"
+#include "group_search.h"
 
 static const int64_t NEVER = (int64_t)1 << 52;
 

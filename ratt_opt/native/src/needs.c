@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "pricing.h"
+#include "group_search.h"
 #include "sets.h"
 #include "team.h"
 

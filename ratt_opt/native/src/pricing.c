@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pricing.h"
+#include "group_search.h"
 #include "sets.h"
 #include "team.h"
 

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pricing.h"
+#include "group_search.h"
 #include "records.h"
 #include "sets.h"
 #include "team.h"

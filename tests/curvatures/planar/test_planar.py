@@ -11,11 +11,12 @@ from scipy.optimize import linprog
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
-from ratt_opt.curvatures.planar import context_search, inequalities
+from ratt_opt.curvatures.planar import ceilings as ceilings_module
+from ratt_opt.curvatures.planar import context_search
+from ratt_opt.curvatures.planar.ceilings import ceilings
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
 from ratt_opt.curvatures.planar.inequalities import (
-    ceilings,
     least_enough,
     least_marginal,
     most_enough,
@@ -272,8 +273,8 @@ def test_sums_over_owners_of_their_largest_option(shape, monkeypatch):
     values = levels[:, :, None] - slopes[:, None, None] * own
     largest = [values[:, owners == one].max(axis=1) for one in np.unique(owners)]
     for terms in (10**6, 1):
-        monkeypatch.setattr(inequalities, "TERMS", terms)
-        sums, sizes = inequalities._sums_of_largest(owners, levels, slopes, own)
+        monkeypatch.setattr(ceilings_module, "TERMS", terms)
+        sums, sizes = ceilings_module._sums_of_largest(owners, levels, slopes, own)
         assert sums == pytest.approx(sum(largest, np.zeros((rows, places))))
         assert sizes == pytest.approx(sum(map(np.abs, largest), np.zeros((rows, places))))
 
@@ -294,11 +295,11 @@ def test_what_c_may_not_read_is_refused():
         "slopes": np.ones(2),
         "own": np.ones((2, 3)),
     }
-    inequalities._sums_of_largest(**good)
+    ceilings_module._sums_of_largest(**good)
     for name, array in good.items():
         for bad in (array.astype(np.float32), np.repeat(array, 2, axis=-1)[..., ::2]):
             with pytest.raises(ro.InputError):
-                inequalities._sums_of_largest(**good | {name: bad})
+                ceilings_module._sums_of_largest(**good | {name: bad})
 
 
 def test_two_inequalities_leave_no_better_pair_than_the_formulas_say():

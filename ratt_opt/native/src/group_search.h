@@ -1,6 +1,6 @@
 /* The search for a group of negative reduced cost, shared by the files of pricing. */
-#ifndef RATT_PRICING_H
-#define RATT_PRICING_H
+#ifndef RATT_GROUP_SEARCH_H
+#define RATT_GROUP_SEARCH_H
 
 #include <stdint.h>
 
