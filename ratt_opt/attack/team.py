@@ -11,6 +11,8 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked, function
+from ratt_opt.running.pace import Pace, PaceParams
+from ratt_opt.setfunctions.base import IMPROVEMENT
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ MOST_ROBOTS = 32
 """Whose sets the loops have as masks of 32 bits; a team may have more."""
 MOST_TABULATED = 16
 """Whose sets are valued in one call."""
+EXCHANGES = PaceParams(first=2**12, most=2**26)
+"""Pairs of robots that exchanges try in one call."""
 LARGEST_DIMENSION = 64
 """Of states, in the loops."""
 PLANE = 2
@@ -57,6 +61,8 @@ class TeamRecord(Structure):
         ("information", c_void_p),
         ("before", c_void_p),
         ("before_all", c_double),
+        ("relative", c_double),
+        ("rounding", c_double),
     ]
 
 
@@ -82,7 +88,9 @@ class Team:
         self.information = checked("information", information, np.float64, (robots, targets, entries))
         self._before = np.zeros(targets)
         arrays = map(address, (self.weights, self.prior, self.information, self._before))
-        self.record = TeamRecord(robots, targets, d, objective.compiled_code, *arrays, 0.0)
+        improvement = IMPROVEMENT.relative, objective.rounding
+        self.record = TeamRecord(robots, targets, d, objective.compiled_code, *arrays, 0.0, *improvement)
+        self.pace = Pace(EXCHANGES)
         function("criteria_before", None, POINTER(TeamRecord), c_void_p)(self.record, address(self._before))
 
     @classmethod

@@ -78,7 +78,7 @@ class _Exchanges:
             if budget.is_over:
                 return False
             value = self._team_value(attack)
-            if value < self.value:
+            if value < self.value - self._problem.objective.least_improvement(self.value):
                 self.attack, self.value = attack, value
                 return True
         return False

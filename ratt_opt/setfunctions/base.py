@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -17,7 +19,16 @@ if TYPE_CHECKING:
 
     from ratt_opt.setfunctions.decomposition import Decomposition
 
-__all__ = ["SetFunction", "SizedFunction", "TableFunction", "check_table_size", "checked_values", "finite_values"]
+__all__ = [
+    "IMPROVEMENT",
+    "ImprovementParams",
+    "SetFunction",
+    "SizedFunction",
+    "TableFunction",
+    "check_table_size",
+    "checked_values",
+    "finite_values",
+]
 
 LARGEST_TABLE = 26
 """Largest ground set that :meth:`SetFunction.table` accepts (512 MiB of float64)."""
@@ -56,6 +67,20 @@ def checked_values(f: SetFunction, membership: BoolArray) -> FloatArray:
     return values
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImprovementParams:
+    """When one value is better than another.
+
+    ``relative`` : share of a value [1] that an improvement must exceed: more ends exchanges sooner and a little
+    worse, less lets them follow the rounding of long sums
+    """
+
+    relative: float = 1e-12
+
+
+IMPROVEMENT = ImprovementParams()
+
+
 class SetFunction(ABC):
     """A real function of the subsets of ``0..n-1``; immutable.
 
@@ -80,6 +105,17 @@ class SetFunction(ABC):
     def rounding(self) -> float:
         """Values that differ by no more may be equal up to rounding; 0 if nothing is known of that."""
         return 0.0
+
+    def least_improvement(self, value: float, *, terms: int = 1) -> float:
+        """Smallest improvement of a value that is more than rounding: every loop of exchanges asks for it.
+
+        A loop that takes less goes on in a circle: where values are small beside what they were subtracted from, their
+        rounding is larger than any share of them.
+
+        ``terms`` : values of sets that ``value`` is made of; 2 for a marginal
+        """
+        share = IMPROVEMENT.relative * abs(value) if isfinite(value) else 0.0  # anything is better than nothing known
+        return max(share, terms * self.rounding)
 
     @property
     def most_total_curvature(self) -> float:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.budget import OutOfBudget, Stop
+from ratt_opt.running.pace import Pace, PaceParams
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, check_table_size, checked_values
 
 if TYPE_CHECKING:
@@ -16,10 +16,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Metered", "metered", "table_within", "unmetered"]
 
-AT_ONCE = 0.02
-"""Seconds of values that are computed at once: the clock and interrupts are checked about this often."""
-MOST_AT_ONCE = 2**14
-"""Sets that are valued at once, however fast: their memberships stay in cache."""
+VALUES = PaceParams(first=1, most=2**14)
+"""Sets that are valued at once: however fast they are, their memberships stay in cache."""
 MOST_KEPT_AT_ONCE, MOST_KEPT = 2**12, 2**17
 """Sets whose values are stored: larger batches enumerate, so none comes twice; all stay within some megabytes."""
 
@@ -30,10 +28,10 @@ class Metered(SetFunction):
     However slow ``f`` is, few sets are valued at once, so that the clock is looked at in between.
     """
 
-    __slots__ = ("_at_once", "_budget", "_known", "f")
+    __slots__ = ("_budget", "_known", "_pace", "f")
 
     def __init__(self, f: SetFunction, budget: Budget, known: dict[bytes, float] | None = None) -> None:
-        self.f, self._budget, self._at_once = f, budget, 1
+        self.f, self._budget, self._pace = f, budget, Pace(VALUES)
         self._known: dict[bytes, float] = {} if known is None else known
 
     def within(self, budget: Budget) -> Metered:
@@ -69,15 +67,11 @@ class Metered(SetFunction):
         values, done = np.empty(len(membership)), 0
         while done < len(values):
             self._budget.check()
-            rows = int(min(self._at_once, len(values) - done, self._budget.evaluations_left))
-            began = monotonic()
-            values[done : done + rows] = checked_values(self.f, membership[done : done + rows])
+            rows = int(min(self._pace.units, len(values) - done, self._budget.evaluations_left))
+            with self._pace.timed(rows):
+                values[done : done + rows] = checked_values(self.f, membership[done : done + rows])
             self._budget.evaluate(rows)
-            seconds, done = monotonic() - began, done + rows
-            if seconds > AT_ONCE:
-                self._at_once = max(self._at_once // 2, 1)
-            elif rows == self._at_once and 2 * seconds < AT_ONCE:
-                self._at_once = min(2 * self._at_once, MOST_AT_ONCE)
+            done += rows
         return values
 
 

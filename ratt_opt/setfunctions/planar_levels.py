@@ -18,18 +18,25 @@ class PlanarLevels:
     """``parts`` (n, 3, M) of each element and ``prior`` (3, M): mean, even and odd part about each target.
 
     Both are divided by ``scale``, a power of two, so that squares neither overflow nor vanish.
+    ``rounding`` : of values ``1 / level``, in these units
     """
 
     parts: FloatArray
     prior: FloatArray
     scale: float
+    rounding: float
 
     @classmethod
-    def of(cls, prior_information: FloatArray, information: FloatArray, weights: FloatArray) -> PlanarLevels:
-        """Return the parts of (M, d, d) prior information and (n, M, d, d) information, ``d`` at most 2."""
+    def of(
+        cls, prior_information: FloatArray, information: FloatArray, weights: FloatArray, rounding: float
+    ) -> PlanarLevels:
+        """Return the parts of (M, d, d) prior information and (n, M, d, d) information, ``d`` at most 2.
+
+        ``rounding`` : of values [unit of the criterion]
+        """
         prior = _parts(prior_information / weights[:, None, None])
         scale = float(2.0 ** np.round(np.log2(prior[0].max())))
-        return cls(_parts(information / weights[:, None, None]) / scale, prior / scale, scale)
+        return cls(_parts(information / weights[:, None, None]) / scale, prior / scale, scale, rounding * scale)
 
 
 def _parts(matrices: FloatArray) -> FloatArray:

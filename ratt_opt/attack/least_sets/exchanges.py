@@ -7,8 +7,8 @@ takes in plain NumPy.
 
 from __future__ import annotations
 
-from ctypes import POINTER, c_int, c_int64, c_void_p
-from typing import TYPE_CHECKING, Any
+from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.team import Team
 
-__all__ = ["descended", "exchanged", "weak_sets_of_size"]
+__all__ = ["Scan", "descended", "exchanged", "weak_sets_of_size"]
 
 RANDOM_STARTS = 40
 """Starts beside those that the data suggest; each costs a local search, and with a few dozen in all attacks on teams of
@@ -34,10 +34,19 @@ FEWEST_STARTS = 4
 """Starts that every team gets, whatever they cost."""
 SEED = 0
 """Of the random starts: the same for every call, so that attacks are reproducible."""
-AT_ONCE = 20_000_000
-"""Pairs of robots times targets that compiled loops go through between two looks at the clock (a fifth of a second)."""
 BARRED, INSIDE, OUTSIDE = 0, 1, 2
 """Where a robot is; a barred one takes part in no exchange."""
+
+
+class Scan(Structure):
+    """``Scan`` of ``native/src/records.h``."""
+
+    _fields_: ClassVar = [*((name, c_int64) for name in ("next", "leaves", "enters")), ("lowest", c_double)]
+
+    @classmethod
+    def new(cls) -> Scan:
+        """Nothing was looked at."""
+        return cls(0, -1, -1, np.inf)
 
 
 def exchanged(
@@ -98,15 +107,16 @@ def _starts(team: Team, size: int) -> Iterator[IntArray]:
 
 def _settle(team: Team, kept: FloatArray, where: Any, budget: Budget) -> None:
     """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
-    inside, outside = int((where == INSIDE).sum()), int((where == OUTSIDE).sum())
-    steps = max(AT_ONCE // max(inside * outside * len(team.weights), 1), 1)
-    call = function("exchange_robots", c_int, POINTER(TeamRecord), *[c_void_p] * 2, c_int64)
-    sums = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape)
-    while not (finished := call(team.reference, address(sums), address(where), steps)):
+    call = function("exchange_robots", c_int, POINTER(TeamRecord), *[c_void_p] * 2, c_int64, POINTER(Scan))
+    sums, scan = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape), Scan.new()
+    finished = 0
+    while not finished:
+        with team.pace.timed(pairs := team.pace.units):
+            finished = call(team.reference, address(sums), address(where), pairs, byref(scan))
+        if finished < 0:
+            raise MemoryError
         if budget.is_over:
             return
-    if finished < 0:
-        raise MemoryError
 
 
 def descended(team: Team, start: IntArray) -> IntArray:
@@ -115,7 +125,7 @@ def descended(team: Team, start: IntArray) -> IntArray:
     while True:
         scores = np.einsum("nmt,mt->n", team.information, _slopes(team, team.sums(chosen)))
         others = np.argsort(scores, kind="stable")[: len(start)]
-        if (lower := team.value(others)) >= value:
+        if (lower := team.value(others)) >= value - team.objective.least_improvement(value):
             return chosen
         chosen, value = others, lower
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.exchanges import descended, weak_sets_of_size
+from ratt_opt.attack.least_sets.exchanges import Scan, descended, weak_sets_of_size
 from ratt_opt.attack.team import TeamRecord
 from ratt_opt.native.library import address, function
 
@@ -110,10 +110,17 @@ def _second(sizes: Sizes) -> int:
 STRENGTH = 3
 """Random exchanges of one shake: one is often undone, many leave nothing of the family."""
 SEED = 0
-AT_ONCE = 20_000_000
-"""Pairs of robots times targets that compiled loops go through between two looks at the clock (a fifth of a second)."""
 SHARE = 1e-3
 """Weight of the two groups' sum beside the largest value."""
+EXCHANGE_GROUPS = (
+    POINTER(TeamRecord),
+    c_int,
+    *[c_void_p] * 2,
+    c_double,
+    c_int64,
+    POINTER(Scan),
+    c_void_p,
+)
 
 
 class GroupExchanges:
@@ -177,16 +184,13 @@ class GroupExchanges:
         return tuple(frozenset(np.flatnonzero(self._home == g).tolist()) for g in range(1, len(self.sizes) + 1))
 
     def _improve(self, home: IntArray, budget: Budget) -> None:
-        n_robots, n_targets = self._team.information.shape[:2]
-        call = function(
-            "exchange_groups", c_int, POINTER(TeamRecord), c_int, *[c_void_p] * 2, c_double, c_int64, c_void_p
-        )
+        call, team = function("exchange_groups", c_int, *EXCHANGE_GROUPS), self._team
         must = np.ascontiguousarray(self._must, dtype=np.bool_)
-        home, value = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf)
-        steps, finished = max(4 * AT_ONCE // (n_robots**2 * n_targets), 1), 0
+        home, value, scan = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf), Scan.new()
+        places, finished = (address(home), address(must)), 0
         while not finished:
-            places = address(home), address(must)
-            finished = call(self._team.reference, len(self.sizes), *places, SHARE, steps, byref(value))
+            with team.pace.timed(pairs := team.pace.units):
+                finished = call(team.reference, len(self.sizes), *places, SHARE, pairs, byref(scan), byref(value))
             if finished < 0:
                 raise MemoryError
             finished = finished or budget.is_over

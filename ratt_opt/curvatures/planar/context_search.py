@@ -47,7 +47,7 @@ class PlanarSearch:
 
     def __init__(self, side: MarginalSide, known: Sequence[Relaxed] = ()) -> None:
         self.side = side
-        self.attained = PlanarDescent(side.options, side.prior, side.added, sign=side.sign)
+        self.attained = PlanarDescent(side.options, side.prior, side.added, sign=side.sign, rounding=side.rounding)
         self.attained.offer(self.attained.picks)
         self.nodes = 0
         self.found: list[Relaxed] = []

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ratt_opt.native.library import address, checked, function
+from ratt_opt.setfunctions.base import IMPROVEMENT
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -78,7 +79,7 @@ class DescentRecord(Structure):
 
     _fields_: ClassVar = [
         *((name, c_int64) for name in ("owners", "targets")),
-        *((name, c_double) for name in ("sign", "value")),
+        *((name, c_double) for name in ("sign", "value", "relative", "rounding")),
         *((name, c_void_p) for name in ("parts", "ends", "added", "total", "picks", "rest", "one")),
     ]
 
@@ -87,10 +88,14 @@ class PlanarDescent:
     """``value`` is the marginal of an element in the context ``picks`` (R,), the smallest of those seen.
 
     Or the largest if ``sign`` is -1. Descent is over one and two owners at a time. ``base``, ``added`` : (3, M).
+    ``rounding`` : of a marginal, in its own unit; less is no improvement
     """
 
-    def __init__(self, options: Options, base: FloatArray, added: FloatArray, *, sign: float) -> None:
+    def __init__(
+        self, options: Options, base: FloatArray, added: FloatArray, *, sign: float, rounding: float = 0.0
+    ) -> None:
         self._options, self._base, self._added, self._sign = options, base, added, sign
+        self._rounding = rounding
         self._ends = np.append(options.first, len(options.owners))
         self._total, self._picks = np.empty(base.shape), options.first.copy()
         self._arrays, self._record = self._for_c()
@@ -152,11 +157,12 @@ class PlanarDescent:
             checked("first", self._picks, np.int64, (owners,)),
             *np.empty((2, 3, targets)),
         ]
-        return arrays, DescentRecord(owners, targets, self._sign, 0.0, *map(address, arrays))
+        improvement = IMPROVEMENT.relative, self._rounding
+        return arrays, DescentRecord(owners, targets, self._sign, 0.0, *improvement, *map(address, arrays))
 
     def _keep(self, picks: IntArray, value: float) -> None:
-        # A relative improvement: rounding must not make two contexts take turns.
-        if self._sign * value < self._sign * self.value - 1e-12 * abs(self.value):
+        least = max(IMPROVEMENT.relative * abs(self.value), self._rounding)  # or two contexts would take turns
+        if self._sign * value < self._sign * self.value - least:
             self.picks, self.value = picks.copy(), value
 
     def _sum(self, picks: IntArray) -> FloatArray:

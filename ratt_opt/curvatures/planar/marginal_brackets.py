@@ -98,7 +98,11 @@ class PlanarBrackets(MarginalBrackets):
             self._highest[owner] = self._highest_level(options)
         added, highest = self._data.parts[x], self._highest[owner]
         options, prior = self._options[owner], self._data.prior
-        low, high = (MarginalSide(options, prior, added, largest=largest, highest=highest) for largest in (False, True))
+        rounding = 2 * self._data.rounding  # a marginal is a difference of two values
+        low, high = (
+            MarginalSide(options, prior, added, largest=largest, highest=highest, rounding=rounding)
+            for largest in (False, True)
+        )
         self._searches[x] = PlanarSearch(low, self._pools[0]), PlanarSearch(high, self._pools[1])
 
     def _continue(self, x: int, target: float) -> None:

@@ -62,12 +62,21 @@ class Region:
 class MarginalSide:
     """One element and which of its marginals is bounded: the smallest, or the largest.
 
-    ``prior``, ``added`` : (3, M) parts; ``highest`` : proved upper bound on the smallest level of any context.
+    ``prior``, ``added`` : (3, M) parts; ``highest`` : proved upper bound on the smallest level of any context;
+    ``rounding`` : of a marginal, in its own unit
     """
 
     def __init__(
-        self, options: Options, prior: FloatArray, added: FloatArray, *, largest: bool, highest: float = np.inf
+        self,
+        options: Options,
+        prior: FloatArray,
+        added: FloatArray,
+        *,
+        largest: bool,
+        highest: float = np.inf,
+        rounding: float = 0.0,
     ) -> None:
+        self.rounding = rounding
         self.options, self.prior, self.added, self.largest, self.highest = options, prior, added, largest, highest
         self.sign = -1.0 if largest else 1.0
         self.base, self.own_base = (prior + added, prior) if largest else (prior, prior + added)

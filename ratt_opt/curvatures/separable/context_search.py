@@ -70,7 +70,7 @@ class BestContext:
         posterior = f.prior_information + f.information[contexts].sum(axis=1)
         marginals = f.value(posterior + f.information[self._x]) - f.value(posterior)
         k = int((self._sign * marginals).argmin())
-        if self._sign * marginals[k] < self._sign * self.value:
+        if np.isinf(self.value) or self._sign * (self.value - marginals[k]) > f.least_improvement(self.value, terms=2):
             self.value, self.context = float(marginals[k]), tuple(contexts[k].tolist())
 
 

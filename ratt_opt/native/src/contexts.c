@@ -5,8 +5,7 @@
 #include "records.h"
 #include "sets.h"
 
-enum { LANES = 8 };                   /* targets side by side */
-static const double IMPROVED = 1e-12; /* less, relatively, is rounding, by which two contexts would take turns */
+enum { LANES = 8 }; /* targets side by side */
 
 static inline double lesser(double a, double b) { return a < b ? a : b; }
 
@@ -44,7 +43,10 @@ static void add(const Descent *d, const double *total, double sign, const double
     for (int64_t t = 0; t < 3 * d->targets; t++) out[t] = total[t] + sign * part[t];
 }
 
-static int is_better(const Descent *d, double found) { return found < d->value - IMPROVED * fabs(d->value); }
+/* By more than rounding, by which two contexts would take turns. */
+static int is_better(const Descent *d, double found) {
+    return found < d->value - fmax(d->relative * fabs(d->value), d->rounding);
+}
 
 /* Give each owner in turn its best option beside the others'; whether any has changed. */
 EXPORTED int descend(Descent *d) {

@@ -51,7 +51,7 @@ static double exchange(const Choices *choices, const double *strongest, const ui
             for (int64_t b = 0; b < robots; b++) {
                 if (!blinded[a] || !is_open(choices, members, blinded, b)) continue;
                 double left = left_after(&choices->all, strongest + a * width, strongest + b * width, scratch);
-                if (!(left < worth - 1e-9 * fabs(worth))) continue;
+                if (!(left < worth - fmax(choices->all.relative * fabs(worth), choices->all.rounding))) continue;
                 add(width, strongest + a * width, 1.0, scratch->sums);
                 add(width, strongest + b * width, -1.0, scratch->sums);
                 blinded[a] = 0, blinded[b] = 1, improved = 1;

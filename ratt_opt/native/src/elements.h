@@ -13,6 +13,7 @@ typedef struct {
     const double *prior;       /* (targets, entries) prior information */
     const double *information; /* (elements, targets, entries) */
     const uint8_t *sees;       /* (elements, targets) whether there is information */
+    double relative, rounding; /* as in team.h */
 } Elements;
 
 /* The elements with the robots that choose: at most 64 each, so that a mask of 64 bits holds a set of them. */

@@ -7,6 +7,11 @@
 #include "sets.h"
 #include "team.h"
 
+/* Whether an exchange is left to be tried; `pairs` are counted down, and a call ends when none is left. */
+enum { UNFINISHED, FINISHED };
+
+static void start_scan(Scan *scan) { *scan = (Scan){0, -1, -1, INFINITY}; }
+
 typedef struct {
     const Team *team;
     int64_t *home;              /* (robots) group of each, 0 for those that are blinded */
@@ -14,6 +19,17 @@ typedef struct {
     int groups;
     double *sums, *values, *one;
 } Family;
+
+/* Sums and value of a group, always added in the same order: a value depends on the group alone, not on how the
+   exchanges came to it, so that none is met twice on the way down. */
+static void value_group(Family *f, int64_t group) {
+    int width = f->team->targets * entries_of(f->team);
+    double *sums = f->sums + group * width;
+    memcpy(sums, f->team->prior, (size_t)width * sizeof(double));
+    for (int64_t i = 0; i < f->team->robots; i++)
+        if (f->home[i] == group) add_information(f->team, sums, 1.0, i, sums);
+    f->values[group] = group ? value_of(f->team, sums) : -INFINITY;
+}
 
 /* Value of a group once `leaves` is replaced by `enters`. */
 static double exchanged(const Family *f, int64_t group, int64_t leaves, int64_t enters) {
@@ -24,14 +40,17 @@ static double exchanged(const Family *f, int64_t group, int64_t leaves, int64_t 
     return value_of(f->team, f->one);
 }
 
-/* The exchange that leaves the least best group, both groups below what the best one was; 0 where there is none. Among
-   those that leave another group the best one the sum of both decides, with the weight `share`. */
-static int best_exchange(const Family *f, int64_t top, double share, int64_t *leaves, int64_t *enters) {
-    double second = -INFINITY, lowest = INFINITY, goal = f->values[top] - 1e-12 * fabs(f->values[top]);
+/* Look for the exchange that leaves the least best group, both groups below what the best one was, as far as `pairs`
+   last. Among those that leave another group the best one the sum of both decides, with the weight `share`. */
+static int scan_groups(const Family *f, int64_t top, double share, Scan *scan, int64_t *pairs) {
+    double second = -INFINITY, goal = f->values[top] - least_improvement(f->team, f->values[top]);
     for (int g = 1; g <= f->groups; g++)
         if (g != top) second = fmax(second, f->values[g]);
-    for (int64_t i = 0; i < f->team->robots; i++) {
+    for (; scan->next < f->team->robots; scan->next++) {
+        int64_t i = scan->next;
         if (f->home[i] != top) continue;
+        if (*pairs <= 0) return UNFINISHED;
+        *pairs -= f->team->robots;
         for (int64_t e = 0; e < f->team->robots; e++) {
             if (f->home[e] == top || (f->home[e] == 0 && f->must[i])) continue;
             double mine = exchanged(f, top, i, e);
@@ -39,42 +58,44 @@ static int best_exchange(const Family *f, int64_t top, double share, int64_t *le
             double other = f->home[e] > 0 ? exchanged(f, f->home[e], e, i) : -INFINITY;
             if (other >= goal) continue;
             double larger = fmax(mine, other), score = fmax(larger, second) + share * (mine + larger);
-            if (score < lowest) lowest = score, *leaves = i, *enters = e;
+            if (score < scan->lowest) scan->lowest = score, scan->leaves = i, scan->enters = e;
         }
     }
-    return lowest < INFINITY;
+    return FINISHED;
+}
+
+/* Make the exchange that was found; whether both groups are then worth less than the best one was. It is taken back if
+   they are not: the improvement was rounding. */
+static int exchange_found(Family *f, int64_t top, const Scan *scan) {
+    int64_t other = f->home[scan->enters];
+    double before = f->values[top];
+    f->home[scan->leaves] = other, f->home[scan->enters] = top;
+    value_group(f, top), value_group(f, other);
+    if (f->values[top] < before && f->values[other] < before) return 1;
+    f->home[scan->leaves] = top, f->home[scan->enters] = other;
+    value_group(f, top), value_group(f, other);
+    return 0;
 }
 
 /* Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens. *value: of
-   the best group; returns 1 at the end, 0 after so many `steps`, -1 where memory is short. */
-EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *must, double share, int64_t steps, double *value) {
-    int width = team->targets * entries_of(team), finished = 0;
+   the best group; returns 1 at the end, 0 after about so many `pairs` (the next call with the same `scan` goes on there),
+   -1 where memory is short. */
+EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *must, double share, int64_t pairs,
+                             Scan *scan, double *value) {
+    int width = team->targets * entries_of(team), finished = UNFINISHED;
     double *memory = malloc(((size_t)(groups + 2) * width + (size_t)groups + 1) * sizeof(double));
     if (!memory) return -1;
     Family f = {team, home, must, groups, memory, memory + (size_t)(groups + 2) * width, memory + (size_t)(groups + 1) * width};
-    for (int g = 0; g <= groups; g++) memcpy(f.sums + g * width, team->prior, (size_t)width * sizeof(double));
-    for (int64_t i = 0; i < team->robots; i++) add_information(team, f.sums + home[i] * width, 1.0, i, f.sums + home[i] * width);
-    f.values[0] = -INFINITY;
-    for (int g = 1; g <= groups; g++) f.values[g] = value_of(team, f.sums + g * width);
+    for (int g = 0; g <= groups; g++) value_group(&f, g);
     while (1) {
-        int64_t top = 0, leaves = -1, enters = -1;
+        int64_t top = 0;
         for (int g = 1; g <= groups; g++)
             if (f.values[g] > f.values[top]) top = g;
         *value = f.values[top];
-        if (steps-- <= 0) break;
-        if (!best_exchange(&f, top, share, &leaves, &enters)) {
-            finished = 1;
-            break;
-        }
-        int64_t other = home[enters];
-        double *mine = f.sums + top * width, *theirs = f.sums + other * width;
-        for (int t = 0; t < width; t++) {
-            double change = team->information[enters * width + t] - team->information[leaves * width + t];
-            mine[t] += change, theirs[t] -= change;
-        }
-        home[leaves] = other, home[enters] = top;
-        f.values[top] = value_of(team, mine);
-        if (other > 0) f.values[other] = value_of(team, theirs);
+        if (scan_groups(&f, top, share, scan, &pairs) == UNFINISHED) break;
+        finished = scan->leaves < 0 || !exchange_found(&f, top, scan);
+        start_scan(scan);
+        if (finished) break;
     }
     free(memory);
     return finished;
@@ -82,42 +103,61 @@ EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const 
 
 enum { BARRED, INSIDE, OUTSIDE };
 
+typedef struct {
+    const Team *team;
+    const double *kept;         /* (targets, entries) information without the robots inside */
+    int8_t *where;              /* (robots) */
+    double *sums, *changed, value;
+} OneSet;
+
+/* As `value_group`. */
+static void value_set(OneSet *set) {
+    memcpy(set->sums, set->kept, (size_t)set->team->targets * entries_of(set->team) * sizeof(double));
+    for (int64_t i = 0; i < set->team->robots; i++)
+        if (set->where[i] == INSIDE) add_information(set->team, set->sums, 1.0, i, set->sums);
+    set->value = value_of(set->team, set->sums);
+}
+
+/* Look for the exchange that lowers the value most, as far as `pairs` last. */
+static int scan_robots(const OneSet *set, Scan *scan, int64_t *pairs) {
+    if (isinf(scan->lowest)) scan->lowest = set->value - least_improvement(set->team, set->value);
+    for (; scan->next < set->team->robots; scan->next++) {
+        if (set->where[scan->next] != INSIDE) continue;
+        if (*pairs <= 0) return UNFINISHED;
+        *pairs -= set->team->robots;
+        for (int64_t e = 0; e < set->team->robots; e++) {
+            if (set->where[e] != OUTSIDE) continue;
+            add_information(set->team, set->sums, -1.0, scan->next, set->changed);
+            add_information(set->team, set->changed, 1.0, e, set->changed);
+            double other = value_of(set->team, set->changed);
+            if (other < scan->lowest) scan->lowest = other, scan->leaves = scan->next, scan->enters = e;
+        }
+    }
+    return FINISHED;
+}
+
+/* As `exchange_found`. */
+static int exchange_in_set(OneSet *set, const Scan *scan) {
+    double before = set->value;
+    set->where[scan->leaves] = OUTSIDE, set->where[scan->enters] = INSIDE;
+    value_set(set);
+    if (set->value < before) return 1;
+    set->where[scan->leaves] = INSIDE, set->where[scan->enters] = OUTSIDE;
+    return 0;
+}
+
 /* Exchange one robot inside for one outside, the best pair each time, while that lowers the value of the set. `kept`
    (targets, entries): information without the robots inside; `where` (robots) is changed in place. Returns 1 at the end, 0
-   after so many `steps`, -1 where memory is short. */
-EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t steps) {
-    int width = team->targets * entries_of(team), finished = 0;
-    double *sums = malloc(2 * (size_t)width * sizeof(double)), *changed = sums + width;
+   after about so many `pairs` (the next call with the same `scan` goes on there), -1 where memory is short. */
+EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t pairs, Scan *scan) {
+    int width = team->targets * entries_of(team), finished = UNFINISHED;
+    double *sums = malloc(2 * (size_t)width * sizeof(double));
     if (!sums) return -1;
-    memcpy(sums, kept, (size_t)width * sizeof(double));
-    for (int64_t i = 0; i < team->robots; i++)
-        if (where[i] == INSIDE) add_information(team, sums, 1.0, i, sums);
-    double value = value_of(team, sums), scale = fabs(value);
-    memcpy(changed, sums, (size_t)width * sizeof(double));
-    for (int64_t i = 0; i < team->robots; i++)
-        if (where[i] == OUTSIDE) add_information(team, changed, 1.0, i, changed);
-    scale = fmax(scale, fabs(value_of(team, changed))); /* less than 1e-12 of it is rounding */
-    while (steps-- > 0) {
-        int64_t leaves = -1, enters = -1;
-        double lowest = value - 1e-12 * scale;
-        for (int64_t i = 0; i < team->robots; i++) {
-            if (where[i] != INSIDE) continue;
-            for (int64_t e = 0; e < team->robots; e++) {
-                if (where[e] != OUTSIDE) continue;
-                add_information(team, sums, -1.0, i, changed);
-                add_information(team, changed, 1.0, e, changed);
-                double other = value_of(team, changed);
-                if (other < lowest) lowest = other, leaves = i, enters = e;
-            }
-        }
-        if (leaves < 0) {
-            finished = 1;
-            break;
-        }
-        where[leaves] = OUTSIDE, where[enters] = INSIDE;
-        add_information(team, sums, -1.0, leaves, sums);
-        add_information(team, sums, 1.0, enters, sums);
-        value = lowest;
+    OneSet set = {team, kept, where, sums, sums + width, 0.0};
+    value_set(&set);
+    while (!finished && scan_robots(&set, scan, &pairs) == FINISHED) {
+        finished = scan->leaves < 0 || !exchange_in_set(&set, scan);
+        start_scan(scan);
     }
     free(sums);
     return finished;

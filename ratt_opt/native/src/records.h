@@ -6,6 +6,13 @@
 
 #include "team.h"
 
+/* How far the exchanges of one round were looked at, and the best one so far: that robot `leaves` and `enters`; -1 if none.
+   `lowest` is INFINITY before the first. */
+typedef struct {
+    int64_t next, leaves, enters;
+    double lowest;
+} Scan;
+
 /* A node of the list of groups: robots inside, robots outside, those next to one inside; links between the first two. */
 typedef struct {
     uint64_t inside, outside, near;
@@ -108,6 +115,7 @@ typedef struct {
 typedef struct {
     int64_t owners, targets;
     double sign, value;        /* -1 for the largest marginal, which is then negated; the marginal in the context */
+    double relative, rounding; /* as in `Team`, of marginals */
     const double *parts;       /* (options, 3, targets) */
     const int64_t *ends;       /* (owners + 1) the first option of each owner */
     const double *added;       /* what the element adds */

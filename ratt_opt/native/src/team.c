@@ -14,6 +14,8 @@ enum { PRODUCTS = 8 }; /* ratios of determinants below one logarithm: each is be
 
 int entries_of(const Team *team) { return team->dimension * (team->dimension + 1) / 2; }
 
+double least_improvement(const Team *team, double value) { return fmax(team->relative * fabs(value), team->rounding); }
+
 /* Cholesky factor L of a packed matrix, packed alike. */
 static void factorise(int d, const double *matrix, double *factor) {
     for (int i = 0; i < d; i++)

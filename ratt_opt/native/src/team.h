@@ -16,7 +16,11 @@ typedef struct {
     const double *information; /* (robots, targets, entries) */
     const double *before;      /* (targets) each target's criterion without measurements, from `criteria_before` */
     double before_all;         /* the weighted criterion without measurements where it is the largest eigenvalue */
+    double relative, rounding; /* an improvement counts if it exceeds this share of a value, and the rounding of values */
 } Team;
+
+/* Smallest improvement of a value that is more than rounding: SetFunction.least_improvement. */
+double least_improvement(const Team *team, double value);
 
 int entries_of(const Team *team);
 

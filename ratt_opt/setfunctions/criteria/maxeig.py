@@ -171,7 +171,7 @@ class MaxEigenvalueObjective(StateCriterion):
         """The data as levels, for targets with at most two coordinates."""
         if self.dimension > 2:
             return None
-        return PlanarLevels.of(self.prior_information, self.information, self.weights)
+        return PlanarLevels.of(self.prior_information, self.information, self.weights, self.rounding)
 
 
 class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):

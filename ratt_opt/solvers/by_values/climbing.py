@@ -38,7 +38,8 @@ class Climbing:
                 for e in self._problem.choices[i]:
                     other = current.copy()
                     other[i] = e
-                    if e != current[i] and (better := self._value(other)) > value:
+                    least = value + self._problem.objective.least_improvement(value)
+                    if e != current[i] and (better := self._value(other)) > least:
                         current, value, unchanged = other, better, 0
                 i = (i + 1) % len(current)
         except OutOfBudget:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.budget import Stop
+from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.setfunctions.base import SetFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
 
@@ -96,7 +96,7 @@ class PlanTree:
         is_plan = bool((partial != OPEN).all())
         plan = np.where(partial == OPEN, attacks.elements, partial)
         if is_plan and plan.tobytes() in self._attacked and is_largest and bound == -node[0]:
-            self._settle(plan, bound)
+            self._settle(plan, bound, budget)
             return
         if plan.tobytes() not in self._attacked and self._plan_value(plan) > attacks.lower:
             found = attacks.attack(plan)
@@ -109,14 +109,22 @@ class PlanTree:
         else:
             self._push(partial, bound)
 
-    def _settle(self, plan: IntArray, bound: float) -> None:
-        """Attack the plan of the largest bound until another bound is larger, or no more can be proved of it."""
+    def _settle(self, plan: IntArray, bound: float, budget: Budget) -> None:
+        """Attack the plan of the largest bound until another bound is larger, or no more can be proved of it.
+
+        Raises
+        ------
+        OutOfBudget : its next step needs more values than are left; that step would be tried for ever.
+        """
+        before, spent = bound, budget.evaluations
         found = self._attacks.settle(plan, min(self._largest_left(), float(np.nextafter(bound, -np.inf))))
         bound = min(bound, found.upper)
         if bound <= self._attacks.lower:
             return
         if found.stop in {Stop.TIME, Stop.EVALUATIONS, Stop.GAP}:
             self._keep_plan(plan, bound)
+            if found.stop is Stop.EVALUATIONS and bound == before and budget.evaluations == spent:
+                raise OutOfBudget(found.stop)
         else:
             self._settled = max(self._settled, bound)
 

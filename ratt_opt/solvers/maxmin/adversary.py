@@ -115,10 +115,6 @@ SEARCHED_BY_SIZE = 12
 QUICK_SHARE = 0.05
 """Of the time left for one quick attack, and for exchanges next to known outcomes before: without a limit those on 100
 robots took up to two seconds each, and these all of 50 on 1,000; an exchange takes a third of one."""
-SAME_VALUE = 1e-12
-"""Relative difference of team values under two attacks that counts as none."""
-
-
 NEAR = 4
 """Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew. Not
 tuned."""
@@ -166,7 +162,8 @@ class Adversary:
         worst = self._worst_known(self.problem, plan)
         for moves, first in (BRIEF_MOVES, worst), (MOVES, None), (MOVES, worst), (MOVES, None):
             attack = self._annealed.attack(self.problem, plan, moves, first)
-            if attack is not None and self.problem.team_value(plan, attack) < before - SAME_VALUE * abs(before):
+            least = self.problem.objective.least_improvement(before)
+            if attack is not None and self.problem.team_value(plan, attack) < before - least:
                 self.pool.add(attack)
                 break
         return len(self.pool) > known
@@ -194,7 +191,7 @@ class Adversary:
             groups = [self.pool.groups[g] for g in self.pool.of_outcome[outcome] if self.pool.groups[g]]
             family = GroupExchanges(team, tuple(sorted(map(len, groups), reverse=True)), np.zeros(len(plan), np.bool_))
             family.near(groups, part)
-            if groups and family.value < lowest - SAME_VALUE * abs(lowest) - self.problem.objective.rounding:
+            if groups and family.value < lowest - self.problem.objective.least_improvement(lowest):
                 best, lowest = family, family.value
         if best is None:
             return False
@@ -260,7 +257,7 @@ class Adversary:
         if lasting is attack:
             return
         value = problem.team_value(plan, attack)
-        if problem.team_value(plan, lasting) > value + SAME_VALUE * abs(value):
+        if problem.team_value(plan, lasting) > value + problem.objective.least_improvement(value):
             self.pool.add(attack)
 
     def _quick_attack(self, problem: Problem, plan: IntArray) -> Attack:

@@ -40,7 +40,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget, s
             values[:, rows] = objective.value(points[rows][None] + change[:, None])
             worst = _judged(pool.outcome_values(values), softness)
             k = int(worst.argmax())
-            if worst[k] > value + 1e-12 * abs(value) + objective.rounding:  # a tie is no improvement
+            if worst[k] > value + objective.least_improvement(value):  # a tie is no improvement
                 current[i], value, base = others[k], float(worst[k]), values[k]
                 points[rows] += change[k]
                 unchanged = 0
@@ -82,7 +82,7 @@ class Candidates:
 
     def is_better(self, plan: IntArray) -> bool:
         """Whether a plan is worth more than the best one under the known outcomes, by more than rounding."""
-        return self.pool.plan_value(plan) > self.level + self.pool.objective.rounding
+        return self.pool.plan_value(plan) > self.level + self.pool.objective.least_improvement(self.level)
 
     def meet(self, plan: IntArray) -> bool:
         """Note a plan; whether it is met for the first time."""

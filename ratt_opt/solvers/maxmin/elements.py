@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ctypes import Structure, c_int32, c_int64, c_void_p
+from ctypes import Structure, c_double, c_int32, c_int64, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
@@ -12,6 +12,7 @@ from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.bounds.cuts import mixed_information
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked
+from ratt_opt.setfunctions.base import IMPROVEMENT
 from ratt_opt.setfunctions.information import triangles
 from ratt_opt.solvers.undominated import dominators, undominated
 
@@ -95,6 +96,7 @@ class ElementsRecord(Structure):
         *((name, c_int64) for name in ("elements", "targets", "entries")),
         *((name, c_int32) for name in ("dimension", "criterion")),
         *((name, c_void_p) for name in ("weights", "baseline", "prior", "information", "sees")),
+        *((name, c_double) for name in ("relative", "rounding")),
     ]
 
 
@@ -103,6 +105,7 @@ class PackedElements:
 
     ``criterion`` : the code of trace or log-det; ``weights``, ``baseline`` : (M,) and the weighted criterion of the
     prior information ``prior`` (M, T); ``information`` : (E, M, T); ``sees`` : (E, M) whether there is information
+    ``rounding`` : of values
 
     Raises
     ------
@@ -119,6 +122,7 @@ class PackedElements:
         prior: FloatArray,
         information: FloatArray,
         sees: BoolArray,
+        rounding: float = 0.0,
     ) -> None:
         if not 1 <= dimension <= LARGEST_DIMENSION:
             raise InputError("dimension", f"must be in [1, {LARGEST_DIMENSION}]", dimension)
@@ -131,8 +135,8 @@ class PackedElements:
             checked("information", information, np.float64, (self.count, self.targets, entries)),
             checked("sees", sees, np.bool_, (self.count, self.targets)),
         )
-        sizes = self.count, self.targets, entries
-        self.record = ElementsRecord(*sizes, dimension, criterion, *map(address, self._arrays))
+        sizes, improvement = (self.count, self.targets, entries), (IMPROVEMENT.relative, rounding)
+        self.record = ElementsRecord(*sizes, dimension, criterion, *map(address, self._arrays), *improvement)
 
     @classmethod
     def of(cls, objective: InformationObjective, information: FloatArray, sees: BoolArray) -> PackedElements:
@@ -147,6 +151,7 @@ class PackedElements:
             prior=triangles(prior),
             information=triangles(information),
             sees=np.ascontiguousarray(sees),
+            rounding=objective.rounding,
         )
 
 

@@ -6,17 +6,19 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attack import team as team_module
 from ratt_opt.attack.size_vectors import weak_families
 from ratt_opt.attack.size_vectors.search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget
+from ratt_opt.running.pace import PaceParams
 
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])
 def test_large_teams_start_from_where_linear_descent_ends(name, monkeypatch):
     """With time for one exchange only, that is much of what the attack is."""
-    monkeypatch.setattr(weak_families, "AT_ONCE", 0)
+    monkeypatch.setattr(team_module, "EXCHANGES", PaceParams(first=0, most=0))
     found = {0: 0.0, 10**9: 0.0}
     for seed in range(4):
         problem = ro.random_scenario(40, 12, alpha_s=4, alpha_c=40, seed=seed).problem(name)
