@@ -137,12 +137,6 @@ let consume name nodes build =
 
 let deepest = 2500
 
-(* What a version calls the nodes of upper trees: branches on elements and on the best part of an attack, and leaves. *)
-type names = { element : string; part : string; fenchel : string }
-
-let first_names = { element = "robot"; part = "attack"; fenchel = "cuts" }
-let second_names = { element = "element"; part = "part"; fenchel = "fenchel" }
-
 (* [left]: the elements of each robot that the case leaves, in proofs with covers, where what a branch on a robot does not
    name is one part more; empty in others. [named]: the parts that the last branch on a robot names; a branch that names
    none has the same. *)
@@ -159,21 +153,21 @@ let weighed where numbers node =
 
 let rec in_order f = function [] -> [] | x :: rest -> let first = f x in first :: in_order f rest
 
-let rec upper_node names groups named left next depth =
+let rec upper_node groups named left next depth =
   if depth > deepest then format "upper tree" "is too deep";
-  let again left = upper_node names groups named left next (depth + 1) in
+  let again left = upper_node groups named left next (depth + 1) in
   let rec children k = if k = 0 then [] else let first = again left in first :: children (k - 1) in
   match next () with
   | Record pairs as node when List.mem_assoc "covers" pairs -> CoverLeaf (weighed "cover leaf" "covers" node)
   | Record pairs as node when List.mem_assoc "marginals" pairs ->
       GainLeaf (match fields "marginal leaf" [ "marginals" ] node with [ a ] -> nat "marginal leaf" a | _ -> assert false)
-  | Record pairs as node when List.mem_assoc "weights" pairs -> Leaf (weighed "leaf" names.fenchel node)
-  | Record pairs as node when List.mem_assoc names.part pairs ->
-      let a = match fields "part branch" [ names.part ] node with [ a ] -> index "part branch" a | _ -> assert false in
+  | Record pairs as node when List.mem_assoc "weights" pairs -> Leaf (weighed "leaf" "fenchel" node)
+  | Record pairs as node when List.mem_assoc "part" pairs ->
+      let a = match fields "part branch" [ "part" ] node with [ a ] -> index "part branch" a | _ -> assert false in
       if a >= Array.length groups then format "part branch" "names no attack";
       OnWinner (nat_of_int a, children groups.(a))
   | node ->
-      let given = match node with Record pairs when not (List.mem_assoc "parts" pairs) -> [ names.element ] | _ -> [ names.element; "parts" ] in
+      let given = match node with Record pairs when not (List.mem_assoc "parts" pairs) -> [ "element" ] | _ -> [ "element"; "parts" ] in
       let given = fields "element branch" given node in
       let robot = index "element branch robot" (List.hd given) in
       List.iter (fun parts -> Hashtbl.replace named robot (List.map (indices "element branch") (array "parts" parts))) (List.tl given);
@@ -186,51 +180,7 @@ let rec upper_node names groups named left next depth =
       let below block = let child = again (Robots.add robot block left) in (List.map nat_of_int block, child) in
       OnElement (nat_of_int robot, in_order below (if rest = [] then blocks else blocks @ [ rest ]))
 
-let rec size_node next depth =
-  if depth > deepest then format "lower tree" "is too deep";
-  match integer "lower tree" (next ()) with
-  | -1 -> SetWorth
-  | -2 -> TooFew
-  | -3 -> Average
-  | i ->
-      if i < 0 then format "lower tree" "has an unknown leaf";
-      let inside = size_node next (depth + 1) in
-      Taken (nat_of_int i, inside, size_node next (depth + 1))
-
-let rec attack_node next parts depth =
-  if depth > deepest then format "lower tree" "is too deep";
-  match integer "lower tree" (next ()) with
-  | -1 -> Beyond
-  | i when i < 0 -> Worth (nat_of_int (-2 - i))
-  | i when i mod 2 = 0 ->
-      let blinded = attack_node next parts (depth + 1) in
-      Blinded (nat_of_int (i / 2), blinded, attack_node next parts (depth + 1))
-  | i ->
-      let rec children p =
-        if p > parts then []
-        else let first = attack_node next (if p = parts then parts + 1 else parts) (depth + 1) in first :: children (p + 1) in
-      Group (nat_of_int (i / 2), children 0)
-
-let first_lower value =
-  let kind = match value with Record pairs -> List.assoc_opt "kind" pairs | _ -> None in
-  match kind with
-  | Some (String "forced_size") -> (
-      match fields "lower proof" [ "kind"; "size"; "tree" ] value with
-      | [ _; size; tree ] ->
-          ForcedSize (nat "forced size" size, consume "lower" (array "lower tree" tree) (fun next -> size_node next 0))
-      | _ -> assert false)
-  | Some (String "attack_tree") -> (
-      match fields "lower proof" [ "kind"; "tree" ] value with
-      | [ _; tree ] -> AttackTree (consume "lower" (array "lower tree" tree) (fun next -> attack_node next 0 0))
-      | _ -> assert false)
-  | Some (String ("group_prices" | "group_covers" | "all_groups" | "group_sizes" as kind)) ->
-      format "lower proof" (Printf.sprintf "of kind %s is decided by ratt-opt verify alone" kind)
-  | _ ->
-      if fields "lower proof" [ "kind" ] value <> [ String "enumerated" ] then
-        raise (Fault "lower proof: the kind must be attack_tree, forced_size, group_prices, group_covers, all_groups, group_sizes or enumerated");
-      NoLower
-
-(* Trees of version 2: names for leaves without a number, records of one field for the other nodes. [dear]: what the
+(* Lower trees: names for leaves without a number, records of one field for the other nodes. [dear]: what the
    proof calls leaves of groups that cost too much; none in trees of sets, which branch on who senses alone. *)
 let sets_only = ""
 
@@ -339,7 +289,7 @@ let size_proof net duals forms bounds trees =
   { vectors = List.map vector (array "duals" duals); forms = List.map form (array "forms" forms);
     diagonals = List.map bound (array "bounds" bounds); group_trees = List.map (case_tree "form") (array "trees" trees) }
 
-let second_lower net value =
+let lower_proof net value =
   let pairs = match value with Record pairs -> pairs | _ -> [] in
   let conclusion = List.assoc_opt "conclusion" pairs in
   let given names = fields "lower proof" ("conclusion" :: names) value in
@@ -399,7 +349,7 @@ let cover size value =
       ((nat "cover attack" a, List.map nat_of_int out), List.map (nat "cover point") (array "cover points" points))
   | _ -> assert false
 
-let proofs pb size names prior_range upper lower =
+let proofs pb size prior_range upper lower =
   let has_covers = match upper with Record pairs -> List.mem_assoc "covers" pairs | _ -> false in
   let given = [ "attacks"; "points"; "cuts"; "tree" ] in
   match fields "upper proof" (if has_covers then given @ [ "covers" ] else given) upper with
@@ -419,7 +369,7 @@ let proofs pb size names prior_range upper lower =
       { prior_low = low; prior_high = high; listed; points = List.map (point pb) (array "points" points);
         cut_list = List.map cut (array "cuts" cuts);
         cover_list = List.concat_map (fun found -> List.map (cover size) (array "covers" found)) covers;
-        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node names groups named left next 0);
+        upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups named left next 0);
         lower_part = lower }
   | _ -> assert false
 
@@ -436,9 +386,8 @@ let certificate document =
   match
     fields "certificate" [ "format"; "version"; "problem"; "plan"; "claim"; "prior_eigenvalue"; "upper"; "lower" ] (without_origin document)
   with
-  | [ String "ratt-opt certificate"; Number ("1" | "2" as version); stated; plan; claimed; prior_range; upper; lower ] ->
+  | [ String "ratt-opt certificate"; Number "2"; stated; plan; claimed; prior_range; upper; lower ] ->
       let pb, size = problem stated in
-      let names = if version = "1" then first_names else second_names in
-      let lower = if version = "1" then first_lower lower else second_lower pb.net lower in
-      (pb, claim plan claimed, proofs pb size names prior_range upper lower)
-  | _ -> format "certificate" "must be version 1 or 2 of a ratt-opt certificate"
+      let lower = lower_proof pb.net lower in
+      (pb, claim plan claimed, proofs pb size prior_range upper lower)
+  | _ -> format "certificate" "must be version 2 of a ratt-opt certificate"

@@ -17,7 +17,6 @@ from ratt_opt.cli import run
 from tests.certificates.engine import ENUMERATED, drawn, proof
 
 GUIDE = Path(__file__).parents[2] / "docs" / "guides" / "certificates.md"
-VERSION_1 = next((Path(__file__).parent / "version1").glob("*.json"))
 
 
 @pytest.fixture
@@ -60,7 +59,3 @@ def test_every_conclusion_is_told(monkeypatch, tmp_path):
     assert all(len(lines) >= 3 for lines in told.values())
     monkeypatch.setattr(explanation, "MOST_LINES", 1)
     assert explained(document)[-1] == f"  ... and {len(document['lower']['sets']['tree']) - 1:,} nodes more"
-
-
-def test_format_1_is_not_explained():
-    assert "format 1" in explained(json.loads(VERSION_1.read_text()))[1]

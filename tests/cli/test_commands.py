@@ -195,7 +195,7 @@ def test_a_bound_whose_proof_has_a_fault_fails(
     "case",
     [
         (lambda text: text[:-30], "complete JSON", 2),
-        (lambda text: text.replace('"version":2', '"version":3'), "version must be 1 or 2", 2),
+        (lambda text: text.replace('"version":2', '"version":1'), "version must be 2: write the certificate again", 2),
         (lambda text: text.replace('"claim":{"lower":', '"claim":{"lower":9'), "lower is above upper", 1),
         (lambda text: text[:0], "complete JSON", 2),
     ],

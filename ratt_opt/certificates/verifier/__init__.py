@@ -4,5 +4,5 @@ Open ``verify.py`` first. ``statement.py`` checks the problem and plan a file st
 its two proofs. Of the lower one ``cases.py`` follows the trees, ``duals.py`` and ``sizes.py`` say what follows from
 them, ``worth.py`` values sets of robots. The proofs of the mathematics are in the docstrings of what checks them.
 ``reading.py`` takes the file apart, ``exact_matrices.py`` computes without rounding, ``verified.py`` says what was
-proved. ``version1/`` reads files of the format before this one.
+proved.
 """

@@ -21,8 +21,6 @@ from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 FORMAT = "ratt-opt certificate"
 VERSION = 2
-READ = (1, 2)
-"""Versions that are verified: the first one by ``version1``, for one more release."""
 LARGEST_FILE = 32 * 2**20
 LARGEST_LENGTH = 2_000_000
 """Most entries of all lists together; with the next two this bounds the memory of a check."""
@@ -105,8 +103,9 @@ def load(path: str | Path) -> dict[str, Any]:
         raise _refusal("file", "must be complete JSON in UTF-8", error) from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise _refusal("format", f"must be {FORMAT!r}", document.get("format") if type(document) is dict else "none")
-    if type(document.get("version")) is not int or document["version"] not in READ:
-        raise _refusal("version", f"must be {' or '.join(map(str, READ))}", document.get("version"))
+    if type(document.get("version")) is not int or document["version"] != VERSION:
+        rule = f"must be {VERSION}: write the certificate again with this release"
+        raise _refusal("version", rule, document.get("version"))
     return document
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb
 
-from ratt_opt.certificates.verifier import reading, version1
+from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.lower import check_lower
 from ratt_opt.certificates.verifier.reading import exact, fields, need
 from ratt_opt.certificates.verifier.statement import Statement
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 __all__ = ["verify_certificate", "verify_document"]
-
-FIRST = 1
-"""The version of the format before this one."""
 
 
 def verify_certificate(
@@ -71,23 +68,19 @@ def _checked(time_limit: float | None) -> float:
 def _decide(document: dict[str, Any], expected_problem: object) -> Verified:
     made_from = reading.stated_hash("made_from", document.pop("made_from")) if "made_from" in document else None
     names = "format version problem plan claim prior_eigenvalue upper lower"
-    _, version, problem, plan, claim, prior_range, upper_part, lower_part = fields("", document, names)
+    _, _, problem, plan, claim, prior_range, upper_part, lower_part = fields("", document, names)
     _need_same(problem, expected_problem, made_from)
     low, high = fields("claim", claim, "lower upper")
     lower, upper = exact("claim lower", low), exact("claim upper", high)
     need(lower <= upper, "claim: lower is above upper")
     about = Statement(problem, plan, prior_range)
-    is_first = version == FIRST
-    upper_leaves = check_upper(about, version1.upper_of(upper_part) if is_first else upper_part, upper)
-    if is_first:
-        lower_leaves = version1.LowerCheck(about).check(lower_part, lower)
-    else:
-        lower_leaves = check_lower(about, lower_part, lower)
+    upper_leaves = check_upper(about, upper_part, upper)
+    lower_leaves = check_lower(about, lower_part, lower)
     return Verified(
         lower=float(low),
         upper=float(high),
         lower_proved=lower_leaves > 0,
-        lower_method=str(lower_part["kind" if is_first else "conclusion"]),
+        lower_method=str(lower_part["conclusion"]),
         elements=about.plan,
         objective=about.objective,
         arithmetic="ball arithmetic" if about.objective == "logdet" else "exact rational arithmetic",

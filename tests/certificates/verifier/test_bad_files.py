@@ -48,7 +48,7 @@ FILES = {
     "must be finite": lambda d: json.dumps(d).replace(repr(d["claim"]["lower"]), "NaN"),
     "must not repeat a field": lambda d: json.dumps(d).replace('"plan"', '"claim": 1, "plan"', 1),
     "must be 'ratt-opt certificate'": lambda d: json.dumps({**d, "format": "other"}),
-    "version must be 1 or 2": lambda d: json.dumps({**d, "version": 3}),
+    "version must be 2: write": lambda d: json.dumps({**d, "version": 1}),
     "must be a record": lambda d: json.dumps({**d, "more": 1}),
     "must not nest this deep": lambda _: "[" * 200_000,
     "format must be": lambda _: "[]",
