@@ -95,6 +95,13 @@ from .missions.mission import Mission as Mission
 from .missions.result import MissionStep as MissionStep
 from .missions.run import run_mission as run_mission
 from .missions.live.tracker import Tracker as Tracker
+from .missions.live.gate import Gate as Gate
+from .missions.live.packets import (
+    MeasurementInnovation as MeasurementInnovation,
+    Skipped as Skipped,
+    TrackerPlan as TrackerPlan,
+)
+from .scenario.planner_world import PlannerWorld as PlannerWorld
 from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
 

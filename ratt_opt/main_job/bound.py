@@ -24,11 +24,13 @@ from ratt_opt.graph.largest_group.counting import by_counting
 from ratt_opt.graph.largest_group.smallest import SUBSETS_SOON, by_subsets
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
-from ratt_opt.missions.first_step import first_step
-from ratt_opt.missions.players.planners import elements_of
+from ratt_opt.missions.first_step import first_step, first_world
+from ratt_opt.missions.players.planners import elements_of, planned_with
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.problem import Plan, Problem
 from ratt_opt.running.progress import Step
+from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.planner_world import scenario_world
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
 from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks, random_plan
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.missions.players.planners import Planner
+    from ratt_opt.scenario.planner_world import PlannerWorld
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
@@ -140,8 +143,8 @@ def bound(
     progress : called with one line of text whenever there is something to tell
     guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
         most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
-    planners : planners of your own by name, ``(problem) -> elements`` as in missions: their plans are attacked too, and
-        stand beside the others in every table and figure. They take what time they take
+    planners : planners of your own by name, ``f(problem)`` or ``f(problem, world)`` as in missions: their plans are
+        attacked too, and stand beside the others in every table and figure. They take what time they take
 
     Raises
     ------
@@ -161,7 +164,8 @@ def bound(
         single = problem.objective.singletons()
         alpha_cs, robust = _planned(problem, single, budget)
         baselines = _kept(budget, lambda: tuple(_baselines(problem, single, budget)))
-        baselines += tuple(_own_plans(problem, planners or {}, budget))
+        seen = _world_of(scenario_or_problem, model, problem) if planners else None
+        baselines += tuple(_own_plans(problem, planners or {}, seen, budget))
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
         optimum, best = _best(problem, search, budget)
@@ -267,6 +271,13 @@ def _problem_of(
     return (given.problem() if objective is None else given.problem(objective)), given
 
 
+def _world_of(given: HasProblem | Problem, model: MissionModel | None, problem: Problem) -> PlannerWorld | None:
+    """What planners may look at beside the problem, if it comes from a scenario."""
+    if not isinstance(given, Scenario):
+        return None
+    return scenario_world(given, problem) if model is None else first_world(given, model)
+
+
 def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator[PlanAssessment]:
     plans = {
         "greedy": bait_and_greedy(problem, 0, budget, single),
@@ -282,11 +293,13 @@ def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator
             yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
 
 
-def _own_plans(problem: Problem, planners: Mapping[str, Planner], budget: Budget) -> Iterator[PlanAssessment]:
+def _own_plans(
+    problem: Problem, planners: Mapping[str, Planner], world: PlannerWorld | None, budget: Budget
+) -> Iterator[PlanAssessment]:
     """The plans of the user's planners under attack; an interrupt ends them. InputError : one returns no plan."""
     for name, planner in planners.items():
         try:
-            found = planner(problem)
+            found = planned_with(planner, problem, world)
             elements, cost = elements_of(found, problem), getattr(found, "evaluations", 0)
         except KeyboardInterrupt:
             budget.interrupt()

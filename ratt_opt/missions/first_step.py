@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ratt_opt.errors import InputError
 from ratt_opt.missions.memory import Memory
-from ratt_opt.missions.planning import plan_team
+from ratt_opt.missions.planning import Now, TeamPlan, plan_team
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.information_input import InformationInput, nested
@@ -12,7 +14,10 @@ from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.problem_record import near_pairs
 from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["first_step"]
+if TYPE_CHECKING:
+    from ratt_opt.scenario.planner_world import PlannerWorld
+
+__all__ = ["first_step", "first_world"]
 
 
 def first_step(scenario: object, model: MissionModel) -> InformationInput:
@@ -22,13 +27,8 @@ def first_step(scenario: object, model: MissionModel) -> InformationInput:
     ------
     InputError : it is no scenario, or the model does not fit it.
     """
-    if not isinstance(scenario, Scenario):
-        rule = "must be absent, or come with a Scenario: its sensors and motions need poses"
-        raise InputError("model", rule, type(scenario).__name__)
-    world = World(scenario, model, 1)
-    memory = Memory.start(world.motion, world.period, world.motion.initial(scenario), scenario.n_robots)
-    threatened = Threatened(Attack(), scenario.alpha_s, scenario.alpha_c)
-    team = plan_team(world, memory, scenario.poses, 0, threatened)
+    world, memory, team = _first(scenario, model)
+    scenario = world.scenario
     objective, sequences = team.problem.objective, team.sequences
     assert isinstance(objective, InformationObjective)
     targets = memory.belief(0).predicted(world.motion, world.period, 0.0).positions
@@ -55,3 +55,20 @@ def first_step(scenario: object, model: MissionModel) -> InformationInput:
         target_positions=nested(targets),
         units=("m",) * objective.dimension,
     )
+
+
+def first_world(scenario: Scenario, model: MissionModel) -> PlannerWorld:
+    """What planners of that problem may look at."""
+    *_, team = _first(scenario, model)
+    return team.parts[0].world
+
+
+def _first(scenario: object, model: MissionModel) -> tuple[World, Memory, TeamPlan]:
+    """The mission's world, what the team knows, and what it can choose."""
+    if not isinstance(scenario, Scenario):
+        rule = "must be absent, or come with a Scenario: its sensors and motions need poses"
+        raise InputError("model", rule, type(scenario).__name__)
+    world = World(scenario, model, 1)
+    memory = Memory.start(world.motion, world.period, world.motion.initial(scenario), scenario.n_robots)
+    threatened = Threatened(Attack(), scenario.alpha_s, scenario.alpha_c)
+    return world, memory, plan_team(world, memory, Now(0, 0.0, scenario.poses), threatened)

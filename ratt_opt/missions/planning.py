@@ -11,6 +11,7 @@ from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.missions.ahead.horizon import Sequences
 from ratt_opt.missions.beam import beam_sequences
 from ratt_opt.problem import Attack, Problem
+from ratt_opt.scenario.planner_world import PlannerWorld, lengths_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -20,15 +21,29 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import Threatened, World
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Part", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team"]
+__all__ = ["Now", "Part", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team", "planner_world"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """Robots that plan together: ``elements`` of the team, ascending, that are those of ``problem``."""
+    """Robots that plan together: ``elements`` of the team, ascending, that are those of ``problem``.
+
+    ``world`` : what they know of it.
+    """
 
     elements: IntArray
     problem: Problem
+    world: PlannerWorld
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Now:
+    """A step's number, its time [s], and the poses (N, p) at it; ``attacks`` so far."""
+
+    step: int
+    time: float
+    poses: FloatArray
+    attacks: tuple[tuple[int, Attack], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,9 +59,9 @@ class TeamPlan:
     parts: tuple[Part, ...]
     links_short: int
 
-    def chosen(self, plan: Callable[[Problem], IntArray]) -> IntArray:
+    def chosen(self, plan: Callable[[Part], IntArray]) -> IntArray:
         """(N,) elements of the team, each part planned by ``plan``."""
-        picked = [part.elements[plan(part.problem)] for part in self.parts]
+        picked = [part.elements[plan(part)] for part in self.parts]
         return readonly(np.sort(np.concatenate(picked)))  # elements are ascending by robot
 
     def with_budgets(self, alpha_s: int, alpha_c: int) -> Problem:
@@ -73,18 +88,39 @@ def capped(problem: Problem, alpha_s: int, alpha_c: int) -> Problem:
     return replace(problem, alpha_s=min(alpha_s, problem.n_robots), alpha_c=min(alpha_c, links))
 
 
-def plan_team(world: World, memory: Memory, poses: FloatArray, step: int, threatened: Threatened) -> TeamPlan:
+def plan_team(world: World, memory: Memory, now: Now, threatened: Threatened) -> TeamPlan:
     """What the team can choose in a step, after everybody who is connected has told what it knows."""
-    time = step * world.period
+    poses, time = now.poses, now.time
     apart = world.communication(poses, threatened.standing).groups()
     memory = memory.shared(apart)
     beliefs = [memory.belief(min(group)) for group in apart]
     if all(belief is beliefs[0] or belief == beliefs[0] for belief in beliefs[1:]):
         objective, sequences = world.objective(beliefs[0], offered_sequences(world, beliefs[0], poses, time), time)
         problem = world.problem(objective, sequences.owner, poses, threatened)
-        whole = (Part(np.arange(problem.objective.n), problem),)
+        seen = planner_world(world, beliefs[0], sequences, problem, now)
+        whole = (Part(np.arange(problem.objective.n), problem, seen),)
         return TeamPlan(memory, sequences, problem, whole, threatened.alpha_c - problem.alpha_c)
-    return _apart(world, memory, (poses, time, threatened), list(zip(apart, beliefs, strict=True)))
+    return _apart(world, memory, (now, threatened), list(zip(apart, beliefs, strict=True)))
+
+
+def planner_world(world: World, belief: Belief, sequences: Sequences, problem: Problem, now: Now) -> PlannerWorld:
+    """What planners of a team's problem may look at."""
+    ahead, scenario = belief.predicted(world.motion, world.period, now.time), world.scenario
+    return PlannerWorld(
+        step=now.step,
+        time=now.time,
+        poses=readonly(now.poses),
+        ends=readonly(sequences.poses[:, 0]),
+        controls=readonly(sequences.controls[:, 0]),
+        states=ahead.mean,
+        covariances=ahead.covariance,
+        weights=np.array([target.weight for target in scenario.targets]),
+        robot_names=tuple(robot.name for robot in scenario.robots),
+        target_names=tuple(target.name for target in scenario.targets),
+        links=lengths_of(problem, now.poses),
+        robots=tuple(range(scenario.n_robots)),
+        attacks=now.attacks,
+    )
 
 
 def offered_sequences(world: World, belief: Belief, poses: FloatArray, time: float) -> Sequences:
@@ -97,11 +133,12 @@ def offered_sequences(world: World, belief: Belief, poses: FloatArray, time: flo
 def _apart(
     world: World,
     memory: Memory,
-    now: tuple[FloatArray, float, Threatened],
+    at: tuple[Now, Threatened],
     groups: list[tuple[frozenset[int], Belief]],
 ) -> TeamPlan:
     """Each group plans with its own belief; the attacker's problem is that of the belief that knows most."""
-    poses, time, threatened = now
+    now, threatened = at
+    poses, time = now.poses, now.time
     own, kept = [], []
     for group, belief in groups:
         offered = offered_sequences(world, belief, poses, time)
@@ -118,10 +155,12 @@ def _apart(
     knowing = min((belief for _, belief in groups), key=lambda belief: belief.trace)
     criterion = world.criterion(knowing, joined, time)
     team = world.problem(criterion, joined.owner, poses, threatened)
-    parts = []
-    for (group, _), objective in zip(groups, own, strict=True):
-        elements = np.flatnonzero(np.isin(joined.owner, sorted(group)))
-        parts.append(Part(readonly(elements), part_problem(team, objective, sorted(group), elements, threatened)))
+    parts, seen = [], planner_world(world, knowing, joined, team, now)
+    for (group, belief), objective in zip(groups, own, strict=True):
+        members, elements = sorted(group), np.flatnonzero(np.isin(joined.owner, sorted(group)))
+        ahead = belief.predicted(world.motion, world.period, time)
+        problem = part_problem(team, objective, members, elements, threatened)
+        parts.append(Part(readonly(elements), problem, seen.part(members, elements, ahead.mean, ahead.covariance)))
     return TeamPlan(memory, joined, team, tuple(parts), threatened.alpha_c - team.alpha_c)
 
 

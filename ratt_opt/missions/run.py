@@ -18,10 +18,10 @@ from ratt_opt.errors import InputError
 from ratt_opt.missions.journal import Journal
 from ratt_opt.missions.memory import Memory, Pieces
 from ratt_opt.missions.mission import Mission
-from ratt_opt.missions.planning import plan_team
+from ratt_opt.missions.planning import Now, plan_team
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
 from ratt_opt.missions.players.attackers import attack_of, attacker_called
-from ratt_opt.missions.players.planners import elements_of, planner_called
+from ratt_opt.missions.players.planners import elements_of, planned_with, planner_called
 from ratt_opt.missions.result import GroupTrack, MissionStep
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import MissionModel, World
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.missions.belief import Innovation
-    from ratt_opt.missions.planning import TeamPlan
+    from ratt_opt.missions.planning import Part, TeamPlan
     from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.missions.sensing import Reading
@@ -69,7 +69,8 @@ def run_mission(
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
     steps : T, from 1 to a million: every step is kept
     planner : ``"ratt"``, ``"refined"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or
-        ``f(problem)`` that returns a plan or its elements, such as :class:`MaxMinPlanner`
+        ``f(problem)`` or ``f(problem, world)`` that returns a plan or its elements, such as :class:`MaxMinPlanner`;
+        ``world`` is a :class:`PlannerWorld`
     attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
         that returns an :class:`Attack`
     attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or
@@ -137,6 +138,7 @@ class _Flight:
         self.poses = scenario.poses
         self.truth = belief.mean + _drawn(self._rng(0, TRUTH), belief.covariance)
         self.attack = Attack()
+        self.attacks: list[tuple[int, Attack]] = []
         self.steps: list[MissionStep] = []
         self.decisions: list[tuple[IntArray, Attack]] = []
         self.seconds: list[float] = []
@@ -145,11 +147,12 @@ class _Flight:
         """One step of everything."""
         threatened = self.players.model.threatened(step, self.attack, self.world.scenario)
         began = perf_counter()
-        team = plan_team(self.world, self.memory, self.poses, step, threatened)
+        now = Now(step, step * self.world.period, self.poses, tuple(self.attacks))
+        team = plan_team(self.world, self.memory, now, threatened)
         self.memory = team.memory
         recorded = log.recorded(step)
         if recorded is None:
-            elements = team.chosen(lambda problem: elements_of(self.players.plan(problem), problem))
+            elements = team.chosen(self._planned)
             self.seconds.append(perf_counter() - began)
             self.attack = self._attacked(step, team, elements, threatened)
             log.append(step, elements, self.attack)
@@ -158,10 +161,15 @@ class _Flight:
             self.seconds.append(0.0)
             team.problem.check_plan(elements)
         self.decisions.append((elements, self.attack))
+        if not self.attacks or self.attacks[-1][1] != self.attack:
+            self.attacks.append((step, self.attack))
         self.poses = readonly(team.sequences.poses[elements, 0])
         self._move_targets(step)
         controls = readonly(team.sequences.controls[elements, 0])
         self._measure(step, team, elements, controls)
+
+    def _planned(self, part: Part) -> IntArray:
+        return elements_of(planned_with(self.players.plan, part.problem, part.world), part.problem)
 
     def _attacked(self, step: int, team: TeamPlan, elements: IntArray, threatened: Threatened) -> Attack:
         """What is in force in this step: what stood before and what the attacker adds."""
@@ -185,7 +193,7 @@ class _Flight:
         world, n_robots = self.world, self.world.scenario.n_robots
         size = max(sensor.size for sensor in world.sensors)
         luck = self._rng(step, LUCK).standard_normal((n_robots, len(self.truth), size))
-        readings = dict(enumerate(simulated_readings(world, self.poses, self.truth[:, :2], luck)))
+        readings = dict(enumerate(simulated_readings(world, self.poses, self.truth, luck)))
         groups = team.groups_under(self.attack)
         whole = Pieces.none(n_robots, self.memory.base)
         made, innovations = np.zeros(n_robots, dtype=np.bool_), []

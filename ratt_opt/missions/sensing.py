@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt.missions.belief import Innovation
 from ratt_opt.missions.memory import Pieces
+from ratt_opt.setfunctions.information import symmetric_inverse
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import World
     from ratt_opt.scenario.sensors.model import SensorModel
 
-__all__ = ["Reading", "group_pieces", "simulated_readings"]
+__all__ = ["Reading", "group_pieces", "innovations_squared", "simulated_readings"]
 
 ROUNDS = 4
 """Linearisations of an iterated update; on the paper's settings the estimate no longer moves visibly after three."""
@@ -35,12 +36,12 @@ class Reading:
 
 
 def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck: FloatArray) -> list[Reading]:
-    """What every robot would measure of targets at ``truth`` (M, 2); ``luck`` (N, M, k) standard normal numbers."""
+    """What every robot would measure of targets in states ``truth`` (M, d); ``luck`` (N, M, k) standard normal."""
     readings: dict[int, Reading] = {}
     for sensor, robots in world.alike:
-        here = poses[robots][:, None]
-        apart = np.linalg.norm(truth - here[..., :2], axis=-1)
-        there = np.where((apart > ON_TOP)[..., None], truth, truth + 1.0)
+        here, states = poses[robots][:, None], truth[:, : sensor.reads]
+        apart = np.linalg.norm(states[:, :2] - here[..., :2], axis=-1)
+        there = np.where((apart > ON_TOP)[..., None], states, states + 1.0)
         values = sensor.measure(here, there) + sensor.disturbance(here, there, luck[robots, :, : sensor.size])
         seen = sensor.sees(here, there) & (apart > ON_TOP)
         readings |= {int(i): Reading(values[k], seen[k]) for k, i in enumerate(robots)}
@@ -61,37 +62,65 @@ def group_pieces(
     Every measurement is linearised at the predicted positions, as the plan does; with an iterated linearisation at the
     estimate that follows, again and again. A sighting counts even if its target was expected out of view.
 
-    ``poses`` : robot by robot (3,), or (M, 3) if each target was measured from another pose.
-    ``pose_covariances`` : (N, 3, 3) of the poses, whose errors are taken for further noise of every measurement.
+    ``poses`` : robot by robot (p,), or (M, p) if each target was measured from another pose.
+    ``pose_covariances`` : (N, p, p) of the poses, whose errors are taken for further noise of every measurement.
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)
     members = set(robots)
     rounds = ROUNDS if world.model.linearisation == "iterated" else 1
-    point, spread = predicted, None if world.model.linearisation == "first order" else predicted.position_covariance
+    point, second_order = predicted, world.model.linearisation != "first order"
     for _ in range(rounds):
         squared, count = 0.0, 0
         for sensor, owners in world.alike:
             own = [i for i in owners.tolist() if i in members]
             if own:
                 sightings = _stacked(own, poses, readings, pose_covariances)
-                read = _linearise(sensor, sightings, (predicted, point, spread))
-                pieces.information[own, :, :2, :2], pieces.vector[own, :, :2] = read.information, read.vector
-                squared, count = squared + read.squared, count + read.count
+                read = _linearise(sensor, sightings, (predicted, point), second_order=second_order)
+                r = sensor.reads
+                pieces.information[own, :, :r, :r], pieces.vector[own, :, :r] = read.information, read.vector
+                squared, count = squared + float(read.squared.sum()), count + int(read.usable.sum()) * sensor.size
         chosen = np.isin(np.arange(world.scenario.n_robots), sorted(members))
         information, vector = pieces.of(chosen)
-        updated = predicted.updated(information, vector)
-        point, spread = updated, None if spread is None else updated.position_covariance
+        point = updated = predicted.updated(information, vector)
     # Sum of nu' S^-1 nu over all targets, by the matrix inversion lemma: what R^-1 says less what the update explains.
     moved = vector - (information @ predicted.mean[..., None])[..., 0]
     explained = float(np.einsum("mi,mij,mj->", moved, updated.covariance, moved))
     return pieces, Innovation(squared=max(squared - explained, 0.0), count=count)
 
 
+def innovations_squared(
+    world: World,
+    predicted: Belief,
+    poses: Mapping[int, FloatArray],
+    readings: Mapping[int, Reading],
+    pose_covariances: FloatArray | None = None,
+) -> FloatArray:
+    """(N, M) normalised innovation squared of each measurement alone, before any is taken in; NaN if there is none.
+
+    ``nu' S^-1 nu`` with ``S = H P H' + R``; of a consistent filter a chi-square variable of ``sensor.size`` degrees.
+    """
+    squares = np.full((world.scenario.n_robots, len(predicted.mean)), np.nan)
+    for sensor, owners in world.alike:
+        own = [i for i in owners.tolist() if i in readings]
+        if own:
+            second_order, r = world.model.linearisation != "first order", sensor.reads
+            sightings = _stacked(own, poses, readings, pose_covariances)
+            read = _linearise(sensor, sightings, (predicted, predicted), second_order=second_order)
+            i, j = np.nonzero(read.usable)
+            mean, covariance = predicted.mean[j, :r], predicted.covariance[j, :r, :r]
+            # By the matrix inversion lemma, so that a sensor may be silent in some direction (R^-1 singular).
+            moved = read.vector[i, j] - (read.information[i, j] @ mean[..., None])[..., 0]
+            left = symmetric_inverse(symmetric_inverse(covariance) + read.information[i, j])
+            explained = np.einsum("ki,kij,kj->k", moved, left, moved)
+            squares[np.array(own)[i], j] = np.maximum(read.squared[i, j] - explained, 0.0)
+    return squares
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sightings:
-    """What K robots with the same sensor measured, from ``poses`` (K, M, 3): ``values`` (K, M, k), ``seen`` (K, M).
+    """What K robots with the same sensor measured, from ``poses`` (K, M, p): ``values`` (K, M, k), ``seen`` (K, M).
 
-    ``pose_covariances`` : (K, 3, 3), or ``None`` if the poses are exact.
+    ``pose_covariances`` : (K, p, p), or ``None`` if the poses are exact.
     """
 
     poses: FloatArray
@@ -107,57 +136,65 @@ def _stacked(
     pose_covariances: FloatArray | None,
 ) -> _Sightings:
     seen = np.stack([readings[i].seen for i in robots])
-    places = np.stack([np.broadcast_to(poses[i], (seen.shape[1], 3)) for i in robots])
+    places = np.stack([np.broadcast_to(poses[i], (seen.shape[1], np.shape(poses[i])[-1])) for i in robots])
     unsure = None if pose_covariances is None else pose_covariances[robots]
     return _Sightings(places, np.stack([readings[i].values for i in robots]), seen, unsure)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Read:
-    """K robots' ``information`` (K, M, 2, 2) and ``vector`` (K, M, 2), and ``nu' R^-1 nu`` of the numbers measured."""
+    """K robots' ``information`` (K, M, r, r) and ``vector`` (K, M, r) of what is ``usable`` (K, M).
+
+    ``squared`` : (K, M) ``nu' R^-1 nu`` of each measurement.
+    """
 
     information: FloatArray
     vector: FloatArray
-    squared: float
-    count: int
+    squared: FloatArray
+    usable: BoolArray
 
 
-def _linearise(sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, Belief, FloatArray | None]) -> _Read:
+def _linearise(
+    sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, Belief], *, second_order: bool
+) -> _Read:
     """Some robots' pieces, linearised at the second belief of ``about``; the first is the prediction."""
-    predicted, point, spread = about
-    poses, places = sightings.poses, _places(sensor, sightings, point.positions)
-    usable = sightings.seen & (np.linalg.norm(places - poses[..., :2], axis=-1) > ON_TOP)
+    predicted, point = about
+    r, poses = sensor.reads, sightings.poses
+    places = _places(sensor, sightings, point.mean[:, :r])
+    usable = sightings.seen & (np.linalg.norm(places[..., :2] - poses[..., :2], axis=-1) > ON_TOP)
     i, j = np.nonzero(usable)
     here, there, values = poses[i, j], places[i, j], sightings.values[i, j]
     slope = sensor.jacobian(here, there)
-    added = None if spread is None else sensor.bending(here, there, spread[j])
+    added = sensor.bending(here, there, point.covariance[j, :r, :r]) if second_order else None
     if sightings.pose_covariances is not None:
         turned = sensor.pose_jacobian(here, there)
         of_poses = turned @ sightings.pose_covariances[i] @ np.swapaxes(turned, -1, -2)
         added = of_poses if added is None else added + of_poses
     weights = sensor.weights(here, there, added, values)
     surprise = sensor.surprise(values, sensor.measure(here, there))
-    # As linear in the position: the surprise at the point of linearisation, plus the slope times that point.
+    # As linear in the state: the surprise at the point of linearisation, plus the slope times that point.
     linear = surprise + (slope @ there[..., None])[..., 0]
     weighted = np.swapaxes(slope, -1, -2) @ weights
     information = weighted @ slope
-    off = linear - (slope @ predicted.positions[j][..., None])[..., 0]
+    off = linear - (slope @ predicted.mean[j, :r][..., None])[..., 0]
     read = _Read(
-        information=np.zeros((*usable.shape, 2, 2)),
-        vector=np.zeros((*usable.shape, 2)),
-        squared=float(np.einsum("mi,mij,mj->", off, weights, off)),
-        count=len(j) * sensor.size,
+        information=np.zeros((*usable.shape, r, r)),
+        vector=np.zeros((*usable.shape, r)),
+        squared=np.zeros(usable.shape),
+        usable=usable,
     )
     read.information[i, j] = (information + np.swapaxes(information, -1, -2)) / 2
     read.vector[i, j] = (weighted @ linear[..., None])[..., 0]
+    read.squared[i, j] = np.einsum("mi,mij,mj->m", off, weights, off)
     return read
 
 
 def _places(sensor: SensorModel, sightings: _Sightings, expected: FloatArray) -> FloatArray:
-    """(K, M, 2) where to linearise: as expected, or if that is on top of the robot, at the point that was sighted."""
-    places = np.array(np.broadcast_to(expected, (*sightings.values.shape[:2], 2)))
-    on_top = sightings.seen & (np.linalg.norm(places - sightings.poses[..., :2], axis=-1) <= ON_TOP)
+    """(K, M, r) where to linearise: as expected, or if that is on top of the robot, at the point that was sighted."""
+    places = np.array(np.broadcast_to(expected, (*sightings.values.shape[:2], expected.shape[-1])))
+    on_top = sightings.seen & (np.linalg.norm(places[..., :2] - sightings.poses[..., :2], axis=-1) <= ON_TOP)
     if on_top.any():
         pointed = sensor.pointed_at(sightings.poses, sightings.values)
-        places[on_top] = places[on_top] if pointed is None else pointed[on_top]
+        if pointed is not None:
+            places[on_top, :2] = pointed[on_top]
     return places

@@ -14,10 +14,11 @@ from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.attackers import attack_of
 from ratt_opt.missions.players.named import player_called
-from ratt_opt.missions.players.planners import RefinedPlanner, elements_of
+from ratt_opt.missions.players.planners import RefinedPlanner, elements_of, planned_with
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.planner_world import scenario_world
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.simulation import simulate_tracking
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
@@ -125,7 +126,8 @@ class Instance:
         InputError : there is none of that name, or yours returns no plan.
         """
         if callable(planner):
-            return elements_of(planner(self.problem), self.problem)
+            world = None if self.drawn is None else scenario_world(self.drawn, self.problem)
+            return elements_of(planned_with(planner, self.problem, world), self.problem)
         return player_called("planner", planner, PLANNERS)(self)
 
     def strike(self, attacker: str | OwnAttacker, plan: IntArray) -> tuple[Attack, float | None]:

@@ -86,8 +86,8 @@ def test_a_sensor_that_tells_nothing_leaves_the_belief() -> None:
     scenario = team(Nothing())
     tracker = Tracker(scenario)
     tracker.step()
-    with pytest.warns(RuntimeWarning, match="robot 0's sighting of target 0 was not used: it tells nothing"):
-        tracker.step(sightings(scenario, np.random.default_rng(0)))
+    skipped = tracker.step(sightings(scenario, np.random.default_rng(0))).skipped
+    assert {one.reason for one in skipped} == {"tells nothing"}
     assert tracker.beliefs.trace == pytest.approx(54.0 + 3 * 2 * 0.25)
     assert np.isnan(run_mission(scenario, steps=2).nis).all()
 

@@ -10,7 +10,9 @@ import numpy as np
 from ratt_opt._validation import FloatArray, check_finite, check_integer, check_number, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.missions.live.history import ON_TIME, Made
+from ratt_opt.missions.live.packets import PacketError
 from ratt_opt.missions.live.state import Measurement
+from ratt_opt.scenario.record import LARGEST
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -28,10 +30,14 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arrivals:
-    """Checks of what a tracker in this state is given; every error is an ``InputError``."""
+    """Checks of what a tracker in this state is given; every error is an ``InputError``.
+
+    ``skew`` : seconds by which a stamp may be ahead of the step's clock; it then counts as the step's.
+    """
 
     world: World
     state: TrackerState
+    skew: float
 
     def passed(self, now: float | None) -> tuple[float, float | None]:
         """Seconds since the last step, none before the first, and the caller's clock."""
@@ -68,28 +74,45 @@ class Arrivals:
                 raise InputError(f"pose_covariances[{i}]", rule, matrix.tolist())
         return readonly(places), readonly((unsure + np.swapaxes(unsure, -1, -2)) / 2)
 
-    def made(self, measurements: list[Measurement], time: float, now: float | None) -> list[Made]:
-        """Every measurement with its time since the start; ``time`` and ``now`` are those of this step."""
+    def made(self, measurements: list[Measurement], time: float, now: float | None) -> list[Made | PacketError]:
+        """Every measurement with its time since the start, or why it cannot be taken in.
+
+        ``time`` and ``now`` are those of this step. InputError : one is no measurement, or not of its sensor's length.
+        """
         return [self._made(f"measurements[{k}]", one, time, now) for k, one in enumerate(measurements)]
 
-    def _made(self, name: str, given: Measurement, time: float, now: float | None) -> Made:
+    def _made(self, name: str, given: Measurement, time: float, now: float | None) -> Made | PacketError:
         if not isinstance(given, Measurement):
             raise InputError(name, "must be a Measurement", type(given).__name__)
-        robot = check_integer(f"{name}.robot", given.robot, low=0, high=self.world.scenario.n_robots - 1)
+        try:
+            return self._checked(name, given, time, now)
+        except PacketError as fault:
+            return fault
+
+    def _checked(self, name: str, given: Measurement, time: float, now: float | None) -> Made:
+        robot = check_integer(f"{name}.robot", given.robot, low=0)
         target = check_integer(f"{name}.target", given.target, low=0)
-        if target not in self.state.targets:
-            raise InputError(f"{name}.target", f"must be one of the targets {list(self.state.targets)}", target)
+        values = check_finite(f"{name}.values", given.values, ndim=1)
+        n_robots, targets = self.world.scenario.n_robots, self.state.targets
+        if robot >= n_robots:
+            rule = f"must be an integer in [0, {n_robots - 1}]"
+            raise PacketError("unknown robot", f"{name}.robot", rule, robot)
+        sensor = self.world.sensors[robot]
+        if len(values) != sensor.size:
+            raise InputError(f"{name}.values", f"must have {sensor.size} numbers", len(values))
+        if target not in targets:
+            rule = f"must be one of the targets {list(targets)}"
+            raise PacketError("unknown target", f"{name}.target", rule, target)
         when = self._time(name, given.time, time, now)
         self._check_known(name, robot, target, when)
-        size = self.world.sensors[robot].size
-        values = check_finite(f"{name}.values", given.values, ndim=1)
-        if len(values) != size:
-            raise InputError(f"{name}.values", f"must have {size} numbers", len(values))
-        fault = self.world.sensors[robot].fault(values)
+        if np.abs(values).max() > LARGEST:
+            raise PacketError("impossible", f"{name}.values", f"must stay within {LARGEST:g}", values.tolist())
+        fault = sensor.fault(values)
         if fault is not None:
-            raise InputError(f"{name}.values", fault, values.tolist())
-        stored = Measurement(robot, target, tuple(values.tolist()))
-        return Made(name, when, stored, stamped=given.time is not None)
+            raise PacketError("impossible", f"{name}.values", fault, values.tolist())
+        ahead = when if when > time else None
+        stored = Measurement(robot, target, tuple(values.tolist()), ahead)
+        return Made(name, min(when, time), stored, stamped=given.time is not None)
 
     def _time(self, name: str, stamp: float | None, time: float, now: float | None) -> float:
         """When a measurement was made [s since the start]. Its stamp is on the caller's clock, if there is one."""
@@ -98,18 +121,21 @@ class Arrivals:
         clock = time if now is None else now
         made = check_number(f"{name}.time", stamp) - clock + time
         near, oldest = ON_TIME * self.world.period, self.state.moments[0].time
-        if made > time + near:
-            raise InputError(f"{name}.time", f"must not be after this step's {clock:.6g} s", stamp)
+        if made > time + max(near, self.skew):
+            rule = f"must not be after this step's {clock:.6g} s (by more than the skew, {self.skew:.3g} s)"
+            raise PacketError("future", f"{name}.time", rule, stamp)
         if made < oldest - near:
             rule = f"must not be before {oldest - time + clock:.6g} s, the oldest time that is kept (lag)"
-            raise InputError(f"{name}.time", rule, stamp)
-        return min(max(made, oldest), time)
+            raise PacketError("too late", f"{name}.time", rule, stamp)
+        return max(made, oldest) if made > time + near else min(max(made, oldest), time)
 
     def _check_known(self, name: str, robot: int, target: int, made: float) -> None:
         near = ON_TIME * self.world.period
-        lost = dict(self.state.lost)
-        if robot in lost and made > lost[robot] + near:
-            raise InputError(f"{name}.robot", "must not be lost when it measured", robot)
+        if made > dict(self.state.lost).get(robot, np.inf) + near:
+            raise PacketError("lost robot", f"{name}.robot", "must not be lost when it measured", robot)
+        if made > dict(self.state.blinded).get(robot, np.inf) + near:
+            raise PacketError("blinded robot", f"{name}.robot", "must not be blinded when it measured", robot)
         born = self.state.born[self.state.targets.index(target)]
         if made < born - near:
-            raise InputError(f"{name}.time", f"must not be before target {target} was added, {born:.6g} s", made)
+            rule = f"must not be before target {target} was added, {born:.6g} s"
+            raise PacketError("before its target", f"{name}.time", rule, made)

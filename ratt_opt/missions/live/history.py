@@ -10,14 +10,15 @@ covariance is that of the ends, which is an upper bound whatever their correlati
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, readonly
-from ratt_opt.errors import InputError
+from ratt_opt._validation import BoolArray, FloatArray, readonly
 from ratt_opt.missions.belief import Belief
+from ratt_opt.missions.live.gate import Sighted, judged
+from ratt_opt.missions.live.packets import MeasurementInnovation, PacketError
 from ratt_opt.missions.live.state import Measurement, Moment
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.scenario.sensor import wrap_angle
@@ -25,9 +26,10 @@ from ratt_opt.scenario.sensor import wrap_angle
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ratt_opt.missions.live.gate import Gate, Judgement
     from ratt_opt.missions.world import World
 
-__all__ = ["ON_TIME", "Filter", "Made"]
+__all__ = ["ON_TIME", "Filter", "Made", "TakenIn"]
 
 ON_TIME = 1e-6
 """Times that differ by less than this share of the sampling period count as one."""
@@ -46,6 +48,21 @@ class Made:
     stamped: bool
 
 
+@dataclass(slots=True)
+class TakenIn:
+    """The ``moments`` with new measurements, and what became of these.
+
+    ``faults`` : repeated ones; ``silent`` : those that told nothing; ``innovations`` : of all that were judged;
+    ``found`` : targets that were lost and are found again. Measurements are known by their ``id``.
+    """
+
+    moments: tuple[Moment, ...] = ()
+    faults: dict[int, PacketError] = field(default_factory=dict)
+    silent: set[int] = field(default_factory=set)
+    innovations: dict[int, MeasurementInnovation] = field(default_factory=dict)
+    found: set[int] = field(default_factory=set)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Filter:
     """The filter over moments: ``targets`` (M,) numbers of the targets, ``born`` (M,) when each appeared [s]."""
@@ -53,28 +70,29 @@ class Filter:
     world: World
     targets: tuple[int, ...]
     born: FloatArray
+    gate: Gate | None
 
-    def taken_in(self, moments: Sequence[Moment], made: Sequence[Made]) -> tuple[tuple[Moment, ...], list[Measurement]]:
-        """The moments with new measurements, and those of them that told nothing.
+    def taken_in(self, moments: Sequence[Moment], made: Sequence[Made]) -> TakenIn:
+        """The moments with new measurements, and what became of each.
 
         The last moment is new: its belief and all after the first change are worked out anew.
         """
-        kept = list(moments)
+        kept, found = list(moments), TakenIn()
         first = len(kept) - 1
         for new in made:
             k = self._placed(kept, new.time)
             if k is None:
                 k = self._inserted(kept, new.time)
                 first += k <= first
-            self._refuse_repeats(kept, k, new)
+            if (fault := self._repeated(kept, k, new)) is not None:
+                found.faults[id(new.measurement)] = fault
+                continue
             kept[k] = replace(kept[k], measurements=(*kept[k].measurements, new.measurement))
             first = min(first, k)
-        unused: list[Measurement] = []
         for k in range(first, len(kept)):
-            kept[k], silent = self._updated(kept[k - 1], kept[k])
-            unused += silent
-        given = {id(new.measurement) for new in made}
-        return tuple(kept), [measurement for measurement in unused if id(measurement) in given]
+            kept[k] = self._updated(kept[k - 1], kept[k], found)
+        found.moments = tuple(kept)
+        return found
 
     def predicted(self, belief: Belief, begin: float, end: float) -> Belief:
         """The belief at ``end``; targets that had not appeared before are left as they are."""
@@ -103,30 +121,57 @@ class Filter:
         poses = (1 - share) * before.poses + share * after.poses
         poses[:, 2] = before.poses[:, 2] + share * turn
         unsure = (1 - share) * before.pose_covariances + share * after.pose_covariances
-        moment = Moment(time=time, poses=readonly(poses), pose_covariances=readonly(unsure), belief=before.belief)
+        moment = Moment(
+            time=time,
+            poses=readonly(poses),
+            pose_covariances=readonly(unsure),
+            belief=before.belief,
+            refused=before.refused,
+        )
         moments.insert(k, moment)
         return k
 
-    def _refuse_repeats(self, moments: Sequence[Moment], k: int, new: Made) -> None:
-        near, time = ON_TIME * self.world.period, moments[k].time
-        own = [m for m in moments if abs(m.time - time) <= near] if new.stamped else [moments[k]]
-        pair = new.measurement.robot, new.measurement.target
-        if any((old.robot, old.target) == pair for moment in own for old in moment.measurements):
-            raise InputError(new.name, f"must not repeat robot {pair[0]} and target {pair[1]} at one time", pair)
+    def _repeated(self, moments: Sequence[Moment], k: int, new: Made) -> PacketError | None:
+        near, pair = ON_TIME * self.world.period, (new.measurement.robot, new.measurement.target)
+        made = new.time if new.measurement.time is None else new.measurement.time
+        own = moments if new.stamped else moments[k : k + 1]
+        times = (
+            moment.time if old.time is None else old.time
+            for moment in own
+            for old in moment.measurements
+            if (old.robot, old.target) == pair
+        )
+        if any(not new.stamped or abs(time - made) <= near for time in times):
+            rule = f"must not repeat robot {pair[0]} and target {pair[1]} at one time"
+            return PacketError("repeated", new.name, rule, pair)
+        return None
 
-    def _updated(self, before: Moment, moment: Moment) -> tuple[Moment, list[Measurement]]:
-        """The moment after the one before it, and which of its measurements told nothing."""
+    def _updated(self, before: Moment, moment: Moment, found: TakenIn) -> Moment:
+        """The moment after the one before it; what became of its measurements is noted in ``found``."""
         belief = self.predicted(before.belief, before.time, moment.time)
-        unused: list[Measurement] = []
-        if moment.measurements:
-            readings = self._readings(moment.measurements)
-            unsure = moment.pose_covariances if moment.pose_covariances.any() else None
-            poses = dict(enumerate(moment.poses))
-            pieces, _ = group_pieces(self.world, belief, poses, readings, readings, pose_covariances=unsure)
-            belief = belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
-            row = self._rows()
-            unused = [m for m in moment.measurements if not pieces.information[m.robot, row[m.target]].any()]
-        return replace(moment, belief=belief), unused
+        if not moment.measurements:
+            return replace(moment, belief=belief, refused=before.refused)
+        unsure = moment.pose_covariances if moment.pose_covariances.any() else None
+        sighted = Sighted(dict(enumerate(moment.poses)), self._readings(moment.measurements), unsure)
+        verdict = judged(self.world, belief, sighted, before.refused, self.gate)
+        kept = sighted.only(verdict.accepted)
+        pieces, _ = group_pieces(
+            self.world, verdict.belief, kept.poses, kept.readings, kept.readings, pose_covariances=unsure
+        )
+        belief = verdict.belief.updated(pieces.information.sum(axis=0), pieces.vector.sum(axis=0))
+        self._note(moment, verdict, np.asarray(pieces.information.any(axis=(-1, -2))), found)
+        return replace(moment, belief=belief, refused=verdict.refused)
+
+    def _note(self, moment: Moment, verdict: Judgement, telling: BoolArray, found: TakenIn) -> None:
+        row = self._rows()
+        for m in moment.measurements:
+            i, j = m.robot, row[m.target]
+            accepted, square = bool(verdict.accepted[i, j]), float(verdict.squares[i, j])
+            if accepted and not telling[i, j]:
+                found.silent.add(id(m))
+            elif not np.isnan(square):
+                found.innovations[id(m)] = MeasurementInnovation(m, square, self.world.sensors[i].size, accepted)
+        found.found |= {self.targets[j] for j in verdict.found}
 
     def _readings(self, measurements: Sequence[Measurement]) -> dict[int, Reading]:
         row, count = self._rows(), len(self.targets)

@@ -1,7 +1,12 @@
-"""A plan within a limit of seconds: RATT's first, which takes milliseconds, then the planner's if it is in time."""
+"""A plan within a limit of seconds: RATT's first, which takes milliseconds, then the planner's if it is in time.
+
+A planner that is late or raises an error does not cost the step its plan. If it is late, RATT's is used; if it raised
+an error, the better of RATT's and of the rest of the last plan, by the worst case of each.
+"""
 
 from __future__ import annotations
 
+import logging
 from concurrent.futures import Future
 from concurrent.futures import TimeoutError as LateError
 from dataclasses import dataclass, field
@@ -10,8 +15,9 @@ from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget
-from ratt_opt.missions.players.planners import AnytimePlanner, elements_of
+from ratt_opt.missions.players.planners import AnytimePlanner, elements_of, planned_with
 from ratt_opt.solvers.ratt import ratt
 
 if TYPE_CHECKING:
@@ -20,62 +26,98 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.problem import Problem
+    from ratt_opt.scenario.planner_world import PlannerWorld
 
 __all__ = ["InTime", "Planned"]
 
+LOG = logging.getLogger("ratt_opt.tracker")
 SEARCH_SHARE = 0.7
 """Share of a step's remaining time for a search. It looks at the clock between nodes, and a node takes a while."""
+LATE = "late"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Planned:
-    """``elements`` (N,) of a plan; ``late`` : whether they are RATT's because the planner was late."""
+    """``elements`` (N,) of a plan; ``fallback`` : why they are not the planner's (``"late"``, its error), or ``""``."""
 
     elements: IntArray
-    late: bool
+    fallback: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Asked:
+    """What a step asks: its ``problem``, the ``world`` it comes from, the rest of the last plan to ``start`` from."""
+
+    problem: Problem
+    world: PlannerWorld
+    start: IntArray
 
 
 @dataclass(slots=True)
 class InTime:
-    """Plans within ``time_limit`` [s] of a step's beginning, or whenever the planner is done if there is no limit."""
+    """Plans within ``time_limit`` [s] of a step's beginning, or whenever the planner is done if there is no limit.
+
+    ``fallback_nodes`` : of each worst case by which known plans are compared if the planner fails; more prove more and
+    take longer (a thousand: some milliseconds).
+    """
 
     planner: Planner
     time_limit: float | None
+    fallback_nodes: int = 1000
     _running: Future[IntArray] | None = field(default=None, init=False, repr=False)
 
-    def __call__(self, problem: Problem, start: IntArray, began: float) -> Planned:
-        """Plan one step. A search begins from ``start``, the rest of the last plan, and from RATT's plan."""
+    def __call__(self, asked: Asked, began: float, *, strict: bool) -> Planned:
+        """Plan one step. A search begins from the rest of the last plan, and from RATT's plan."""
+        try:
+            return self._asked(asked, began)
+        except Exception as error:
+            if strict:
+                raise
+            LOG.warning("the planner failed: %s: %s", type(error).__name__, error)
+            return Planned(self._best_known(asked), f"{type(error).__name__}: {error}")
+
+    def _asked(self, asked: Asked, began: float) -> Planned:
         if self.time_limit is None:
-            return Planned(self._whole(problem, start), late=False)
-        known = ratt(problem).elements
+            return Planned(self._whole(asked))
+        known = ratt(asked.problem).elements
         left = self.time_limit - (monotonic() - began)
         if self.planner is ratt:
-            return Planned(known, late=left < 0)
+            return Planned(known, LATE if left < 0 else "")
         if left <= 0 or (self._running is not None and not self._running.done()):
-            return Planned(known, late=True)  # out of time, or a thread is busy with a plan that nobody waits for
+            return Planned(known, LATE)  # out of time, or a thread is busy with a plan that nobody waits for
         budget = Budget(SEARCH_SHARE * left)
-        self._running = _in_thread(partial(self._within, problem, start, budget))
+        running = self._running = _in_thread(partial(self._within, asked, budget))
         try:
-            return Planned(self._running.result(timeout=left), late=False)
+            return Planned(running.result(timeout=left))
         except LateError:
+            if running.done():  # the planner itself raised it
+                raise
             budget.interrupt()
-            return Planned(known, late=True)
+            return Planned(known, LATE)
 
-    def __getstate__(self) -> tuple[Planner, float | None]:
-        return self.planner, self.time_limit
+    def __getstate__(self) -> tuple[Planner, float | None, int]:
+        return self.planner, self.time_limit, self.fallback_nodes
 
-    def __setstate__(self, state: tuple[Planner, float | None]) -> None:
-        (self.planner, self.time_limit), self._running = state, None
+    def __setstate__(self, state: tuple[Planner, float | None, int]) -> None:
+        (self.planner, self.time_limit, self.fallback_nodes), self._running = state, None
 
-    def _whole(self, problem: Problem, start: IntArray) -> IntArray:
-        plan = self.planner
-        found = plan(problem, start=start) if isinstance(plan, AnytimePlanner) else plan(problem)
-        return elements_of(found, problem)
+    def _best_known(self, asked: Asked) -> IntArray:
+        """RATT's plan, or the rest of the last plan if more of that is proved to be left by the worst attack."""
+        problem = asked.problem
+        plans = [ratt(problem).elements, asked.start]
+        return max(plans, key=lambda plan: worst_case_attack(problem, plan, max_nodes=self.fallback_nodes).lower)
 
-    def _within(self, problem: Problem, start: IntArray, budget: Budget) -> IntArray:
-        plan = self.planner
-        found = plan.within(problem, budget, start) if isinstance(plan, AnytimePlanner) else plan(problem)
-        return elements_of(found, problem)
+    def _whole(self, asked: Asked) -> IntArray:
+        plan, problem = self.planner, asked.problem
+        if isinstance(plan, AnytimePlanner):
+            return elements_of(plan(problem, start=asked.start), problem)
+        return elements_of(planned_with(plan, problem, asked.world), problem)
+
+    def _within(self, asked: Asked, budget: Budget) -> IntArray:
+        plan, problem = self.planner, asked.problem
+        if isinstance(plan, AnytimePlanner):
+            return elements_of(plan.within(problem, budget, asked.start), problem)
+        return elements_of(planned_with(plan, problem, asked.world), problem)
 
 
 def _in_thread(work: Callable[[], IntArray]) -> Future[IntArray]:

@@ -40,7 +40,9 @@ def with_attack(world: World, state: TrackerState, attack: Attack) -> TrackerSta
         raise InputError("attack", "must be an Attack", type(attack).__name__)
     for robot in {*attack.sensing, *(i for link in attack.links for i in link)}:
         check_integer("attack robot", robot, low=0, high=world.scenario.n_robots - 1)
-    return replace(state, attack=attack)
+    since = dict(state.blinded)
+    blinded = tuple((robot, since.get(robot, state.time)) for robot in sorted(attack.sensing))
+    return replace(state, attack=attack, blinded=blinded, attacks=(*state.attacks, (state.steps, attack)))
 
 
 def with_target(world: World, state: TrackerState, target: Target) -> tuple[World, TrackerState]:
@@ -54,7 +56,10 @@ def with_target(world: World, state: TrackerState, target: Target) -> tuple[Worl
     fresh = Belief(known.mean[-1:], known.covariance[-1:])
     return _world(world, (*others, began)), replace(
         state,
-        moments=tuple(replace(moment, belief=_joined(moment.belief, fresh)) for moment in state.moments),
+        moments=tuple(
+            replace(moment, belief=_joined(moment.belief, fresh), refused=(*moment.refused, 0))
+            for moment in state.moments
+        ),
         targets=(*state.targets, state.next_target),
         born=(*state.born, state.time),
         next_target=state.next_target + 1,
@@ -93,4 +98,5 @@ def _joined(belief: Belief, more: Belief) -> Belief:
 def _without_row(moment: Moment, row: int, target: int) -> Moment:
     mean, covariance = (np.delete(part, row, axis=0) for part in (moment.belief.mean, moment.belief.covariance))
     kept = tuple(m for m in moment.measurements if m.target != target)
-    return replace(moment, belief=Belief(readonly(mean), readonly(covariance)), measurements=kept)
+    refused = tuple(count for k, count in enumerate(moment.refused) if k != row)
+    return replace(moment, belief=Belief(readonly(mean), readonly(covariance)), refused=refused, measurements=kept)

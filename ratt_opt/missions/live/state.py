@@ -15,7 +15,7 @@ from ratt_opt.problem import Attack
 
 __all__ = ["Measurement", "Moment", "TrackerState"]
 
-FORMAT, VERSION = "ratt-opt tracker", 2
+FORMAT, VERSION = "ratt-opt tracker", 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,13 +35,16 @@ class Measurement:
 class Moment(ByValue):
     """One time [s] with its data: ``poses`` (N, 3) and their covariances (N, 3, 3), and what was measured then.
 
-    ``belief`` : of the targets, the measurements of this time taken in.
+    ``belief`` : of the targets, the measurements of this time taken in. ``refused`` : (M,) times in a row, up to this
+    one, at which the gate refused all sightings of a target. A measurement has a time of its own if its stamp was ahead
+    of this time.
     """
 
     time: float
     poses: FloatArray
     pose_covariances: FloatArray
     belief: Belief
+    refused: tuple[int, ...]
     measurements: tuple[Measurement, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
@@ -52,25 +55,28 @@ class Moment(ByValue):
             "pose_covariances": self.pose_covariances.tolist(),
             "mean": self.belief.mean.tolist(),
             "covariance": self.belief.covariance.tolist(),
-            "measurements": [[m.robot, m.target, list(m.values)] for m in self.measurements],
+            "refused": list(self.refused),
+            "measurements": [[m.robot, m.target, list(m.values), m.time] for m in self.measurements],
         }
 
     @classmethod
     def from_dict(cls, document: dict[str, Any]) -> Moment:
         """The moment that :meth:`to_dict` wrote. InputError : a field is missing or breaks its rule."""
-        _need(document, "time", "poses", "pose_covariances", "mean", "covariance", "measurements")
+        _need(document, "time", "poses", "pose_covariances", "mean", "covariance", "refused", "measurements")
         return cls(
             time=check_number("time", document["time"], low=0.0),
             poses=readonly(check_finite("poses", document["poses"], ndim=2)),
             pose_covariances=readonly(check_finite("pose_covariances", document["pose_covariances"], ndim=3)),
             belief=Belief.of(document["mean"], document["covariance"]),
+            refused=tuple(check_integer("refused", count, low=0) for count in _list("refused", document["refused"])),
             measurements=tuple(
                 Measurement(
                     check_integer("measurement robot", robot, low=0),
                     check_integer("measurement target", target, low=0),
                     tuple(check_finite("measurement values", values, ndim=1).tolist()),
+                    None if stamp is None else check_number("measurement time", stamp),
                 )
-                for robot, target, values in _rows("measurements", document["measurements"], 3)
+                for robot, target, values, stamp in _rows("measurements", document["measurements"], 4)
             ),
         )
 
@@ -83,7 +89,8 @@ class TrackerState(ByValue, Shown):
     in, the last one now; ``controls`` : (N, H, 2) the rest of the last plan; ``steps``, ``missed`` : how many there
     were, and in how many the planner was late. ``targets`` : (M,) their numbers; ``born`` : (M,) when each appeared
     [s]; ``next_target`` : the number of the next one to appear. ``lost`` : robots that are, and since when [s];
-    ``attack`` : what is known to be blinded and cut.
+    ``attack`` : what is known to be blinded and cut; ``blinded`` : its robots, and since when [s]. ``failed`` : steps
+    in which the planner raised an error. ``attacks`` : all that was said, ``(step, attack)``, oldest first.
     """
 
     time: float
@@ -98,6 +105,9 @@ class TrackerState(ByValue, Shown):
     missed: int = 0
     lost: tuple[tuple[int, float], ...] = ()
     attack: Attack = field(default_factory=Attack)
+    blinded: tuple[tuple[int, float], ...] = ()
+    failed: int = 0
+    attacks: tuple[tuple[int, Attack], ...] = ()
 
     @property
     def belief(self) -> Belief:
@@ -121,6 +131,9 @@ class TrackerState(ByValue, Shown):
             "next_target": self.next_target,
             "lost": [list(pair) for pair in self.lost],
             "attack": self.attack.to_dict(),
+            "blinded": [list(pair) for pair in self.blinded],
+            "failed": self.failed,
+            "attacks": [[step, attack.to_dict()] for step, attack in self.attacks],
         }
 
     @classmethod
@@ -136,11 +149,13 @@ class TrackerState(ByValue, Shown):
         if document.get("format") != FORMAT:
             raise InputError("format", f"must be {FORMAT}", document.get("format"))
         version = document.get("version")
-        if version not in {1, VERSION} or isinstance(version, bool):
-            raise InputError("version", f"must be 1 or {VERSION}", version)
+        if version is None or version not in range(1, VERSION + 1) or isinstance(version, bool):
+            raise InputError("version", f"must be in [1, {VERSION}]", version)
         _need(document, "time", "now", "poses", "controls", "steps", "missed")
         document = _of_version_1(document) if version == 1 else document
         _need(document, "moments", "targets", "born", "next_target", "lost", "attack")
+        document = _of_version_2(document) if version < VERSION else document
+        _need(document, "blinded", "failed", "attacks")
         moments = tuple(Moment.from_dict(moment) for moment in _list("moments", document["moments"]))
         if not moments:
             raise InputError("moments", "must hold at least one", "none")
@@ -155,12 +170,21 @@ class TrackerState(ByValue, Shown):
             next_target=check_integer("next_target", document["next_target"], low=0),
             steps=check_integer("steps", document["steps"], low=0),
             missed=check_integer("missed", document["missed"], low=0),
-            lost=tuple(
-                (check_integer("lost", i, low=0), check_number("lost", t, low=0.0))
-                for i, t in _rows("lost", document["lost"], 2)
-            ),
+            lost=_since("lost", document["lost"]),
             attack=_attack(document["attack"]),
+            blinded=_since("blinded", document["blinded"]),
+            failed=check_integer("failed", document["failed"], low=0),
+            attacks=tuple(
+                (check_integer("attacks", step, low=0), _attack(attack))
+                for step, attack in _rows("attacks", document["attacks"], 2)
+            ),
         )
+
+
+def _since(name: str, value: object) -> tuple[tuple[int, float], ...]:
+    """Robots, and since when [s]."""
+    rows = _rows(name, value, 2)
+    return tuple((check_integer(name, i, low=0), check_number(name, t, low=0.0)) for i, t in rows)
 
 
 def _need(document: object, *names: str) -> None:
@@ -192,7 +216,7 @@ def _rows(name: str, value: object, length: int) -> list[Any]:
 
 
 def _of_version_1(document: dict[str, Any]) -> dict[str, Any]:
-    """The fields of this version: one moment, and targets that were all there from the start."""
+    """The fields of version 2: one moment, and targets that were all there from the start."""
     _need(document, "mean", "covariance")
     count = len(check_finite("mean", document["mean"], ndim=2))
     poses = check_finite("poses", document["poses"], ndim=2)
@@ -200,3 +224,17 @@ def _of_version_1(document: dict[str, Any]) -> dict[str, Any]:
     moment |= {"pose_covariances": np.zeros((len(poses), 3, 3)).tolist(), "measurements": []}
     added = {"moments": [moment], "targets": list(range(count)), "born": [0.0] * count, "next_target": count}
     return {**document, **added, "lost": [], "attack": {"sensing": [], "links": []}}
+
+
+def _of_version_2(document: dict[str, Any]) -> dict[str, Any]:
+    """The fields of this version: nothing was refused, and robots known to be blinded are from now on."""
+    count = len(_list("targets", document["targets"]))
+    moments = []
+    for moment in _list("moments", document["moments"]):
+        _need(moment, "measurements")
+        rows = [[*row, None] for row in _rows("measurements", moment["measurements"], 3)]
+        moments.append({**moment, "refused": [0] * count, "measurements": rows})
+    known = _attack(document["attack"])
+    blinded = [[i, document["time"]] for i in sorted(known.sensing)]
+    attacks = [[document["steps"], document["attack"]]] if known != Attack() else []
+    return {**document, "moments": moments, "blinded": blinded, "failed": 0, "attacks": attacks}

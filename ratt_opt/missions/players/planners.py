@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
@@ -20,11 +21,22 @@ if TYPE_CHECKING:
 
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Plan, Problem
+    from ratt_opt.scenario.planner_world import PlannerWorld
     from ratt_opt.solvers.result import MaxMinResult
 
-    Planner = Callable[[Problem], Plan | MaxMinResult | IntArray]
+    Planned = Plan | MaxMinResult | IntArray
+    Planner = Callable[..., Planned]  # f(problem) or f(problem, world): see ``planned_with``
 
-__all__ = ["PLANNERS", "AnytimePlanner", "MaxMinPlanner", "RandomPlanner", "RefinedPlanner", "planner_called"]
+__all__ = [
+    "PLANNERS",
+    "AnytimePlanner",
+    "MaxMinPlanner",
+    "RandomPlanner",
+    "RefinedPlanner",
+    "elements_of",
+    "planned_with",
+    "planner_called",
+]
 
 
 @runtime_checkable
@@ -98,6 +110,29 @@ PLANNERS: dict[str, Planner] = {
 def planner_called(planner: str | Planner) -> Planner:
     """The planner of that name, or the given one. InputError : there is none, or it cannot be called."""
     return player_called("planner", planner, PLANNERS)
+
+
+def planned_with(planner: Planner, problem: Problem, world: PlannerWorld | None) -> Planned:
+    """What a planner returns, called as ``f(problem)`` or, if it takes one, with the world.
+
+    InputError : it needs a world, and the problem comes from none.
+    """
+    if not sees_world(planner):
+        return planner(problem)
+    if world is None:
+        rule = "must be f(problem): this problem comes from no scenario, so there is no world to see"
+        raise InputError("planner", rule, getattr(planner, "__name__", type(planner).__name__))
+    return planner(problem, world)
+
+
+def sees_world(planner: Planner) -> bool:
+    """Whether a planner is ``f(problem, world)``: it has a parameter of that name, or must be given a second one."""
+    try:
+        taken = list(signature(planner).parameters.values())
+    except (TypeError, ValueError):  # compiled, or odd
+        return False
+    places = [p for p in taken if p.kind in {Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD}]
+    return len(places) > 1 and (places[1].name == "world" or places[1].default is Parameter.empty)
 
 
 def elements_of(plan: Plan | MaxMinResult | IntArray, problem: Problem) -> IntArray:

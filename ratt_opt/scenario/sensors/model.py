@@ -1,4 +1,4 @@
-"""What a robot's sensor measures of a target's position: the base class to subclass."""
+"""What a robot's sensor measures of a target: the base class to subclass."""
 
 from __future__ import annotations
 
@@ -26,11 +26,14 @@ central differences err by about 1e-10; of these the wider step makes second der
 
 
 class SensorModel(ABC):
-    """Measurements (..., k) of points (..., 2) [m] from poses (..., 3) x [m], y [m], heading [rad].
+    """Measurements (..., k) of points (..., r) from poses (..., 3 or 4) x [m], y [m], heading [rad], height [m].
 
     A sensor of your own subclasses this and says how many numbers it measures (``size``), which (``measure``) and how
     noisy they are (``noise``); with limits to what it sees also ``sees``. Derivatives by the point are central
     differences unless you give them. Components are independent; those named in ``angles`` wrap around.
+
+    ``points`` are the first ``reads`` numbers of the targets' states: x, y [m] of most sensors; with ``reads = 4`` also
+    the velocity in x and y [m/s], for range rates and the like; with ``reads = 6`` also height [m] and climb [m/s].
 
     It can stand in every place of a sensor: ``Robot(sensor=)``, ``Scenario(sensor=)``, ``MissionModel(sensor=)``. Make
     it a frozen dataclass, so that equal ones are equal; :func:`register_sensor` or an entry point gives it a name in
@@ -41,17 +44,19 @@ class SensorModel(ABC):
     """Numbers k in one measurement."""
     angles: ClassVar[tuple[int, ...]] = ()
     """Components that are angles [rad]."""
+    reads: ClassVar[int] = 2
+    """Numbers r of a target's state that the measurement depends on: 2, 4 or 6."""
 
     @abstractmethod
     def measure(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., k) without noise."""
 
     def jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., k, 2) derivative by the point; central differences, to some ten digits, unless a subclass knows it."""
+        """(..., k, r) derivative by the point; central differences, to some ten digits, unless a subclass knows it."""
         return _slopes(lambda x: self.measure(poses, x), points, POINT_STEP, self.surprise)
 
     def hessian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., k, 2, 2) second derivative by the point; differences of :meth:`jacobian`, to some four digits."""
+        """(..., k, r, r) second derivative by the point; differences of :meth:`jacobian`, to some four digits."""
         return _slopes(lambda x: self.jacobian(poses, x), points, BEND_STEP, np.subtract)
 
     @abstractmethod
@@ -74,7 +79,7 @@ class SensorModel(ABC):
     ) -> FloatArray:
         """(..., k, k) covariance of the measurement about its linearisation at ``points``.
 
-        With the points' ``covariance`` (..., 2, 2), the second-order term ``tr(H_a P H_b P) / 2`` of Gaussian points
+        With the points' ``covariance`` (..., r, r), the second-order term ``tr(H_a P H_b P) / 2`` of Gaussian points
         is added: the part of the error that the linearisation leaves. It is known when a plan is made.
 
         Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 10.3.2.
@@ -83,7 +88,7 @@ class SensorModel(ABC):
         return noise if covariance is None else noise + self.bending(poses, points, covariance)
 
     def bending(self, poses: FloatArray, points: FloatArray, covariance: FloatArray) -> FloatArray:
-        """(..., k, k) the second-order term for points of this ``covariance`` (..., 2, 2)."""
+        """(..., k, k) the second-order term for points of this ``covariance`` (..., r, r)."""
         bent = self.hessian(poses, points) @ covariance[..., None, :, :]
         return np.asarray(np.einsum("...aij,...bji->...ab", bent, bent) / 2)
 
@@ -106,9 +111,9 @@ class SensorModel(ABC):
         return np.asarray(np.sqrt(self.noise(poses, points)) * luck)
 
     def pose_jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., k, 3) derivative by the pose, by central differences unless a subclass knows better."""
+        """(..., k, 3 or 4) derivative by the pose, by central differences unless a subclass knows better."""
         columns = []
-        for step in POSE_STEP * np.eye(3):
+        for step in POSE_STEP * np.eye(poses.shape[-1]):
             ends = [self.measure(poses + sign * step, points) for sign in (1, -1)]
             columns.append(self.surprise(*ends) / (2 * POSE_STEP))
         return np.stack(columns, axis=-1)
@@ -122,7 +127,7 @@ class SensorModel(ABC):
         return None
 
     def information(self, poses: FloatArray, points: FloatArray, covariance: FloatArray | None = None) -> FloatArray:
-        """(K, M, 2, 2) information ``H' R^-1 H`` of one measurement from each of K poses of each of M points."""
+        """(K, M, r, r) information ``H' R^-1 H`` of one measurement from each of K poses of each of M points."""
         here, there = poses[:, None], points[None]
         weights = self.weights(here, there, None if covariance is None else self.bending(here, there, covariance))
         slope = self.jacobian(here, there)
@@ -137,10 +142,10 @@ def _slopes(
     step: float,
     difference: Callable[[FloatArray, FloatArray], FloatArray],
 ) -> FloatArray:
-    """Central differences of ``f`` (..., k) by points (..., 2): (..., k, 2)."""
+    """Central differences of ``f`` (..., k) by points (..., r): (..., k, r)."""
     steps = step * np.maximum(1.0, np.abs(points).max(axis=-1, keepdims=True))
     columns = []
-    for axis in np.eye(2):
+    for axis in np.eye(points.shape[-1]):
         ends = [f(points + sign * steps * axis) for sign in (1, -1)]
         change = difference(*ends)
         columns.append(change / (2 * steps.reshape(steps.shape[:-1] + (1,) * (change.ndim - steps.ndim + 1))))

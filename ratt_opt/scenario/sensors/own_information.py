@@ -22,7 +22,7 @@ __all__ = ["stated_information", "stated_weights"]
 def stated_information(sensor: Sensor, poses: FloatArray, points: FloatArray) -> FloatArray:
     """(..., 2, 2) information of the measurements of ``points`` (..., 2) from ``poses`` (..., 3), pair by pair."""
     shape = np.broadcast_shapes(poses.shape[:-1], points.shape[:-1])
-    here = np.broadcast_to(poses, (*shape, 3)).reshape(-1, 3)
+    here = np.broadcast_to(poses, (*shape, poses.shape[-1])).reshape(-1, poses.shape[-1])
     there = np.broadcast_to(points, (*shape, 2)).reshape(-1, 2)
     told = [sensor.information(a[None], b[None])[0, 0] for a, b in zip(here, there, strict=True)]
     return np.array(told, dtype=np.float64).reshape(*shape, 2, 2)

@@ -89,10 +89,11 @@ class RangeBearing(ByValue, SensorModel):
         return np.asarray((vectors @ (scale[..., None] * along))[..., 0])
 
     def pose_jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., 2, 3)."""
+        """(..., 2, 3 or 4)."""
         slope = jacobian(poses, points)
-        turned = np.broadcast_to(np.array([[0.0], [-1.0]]), (*slope.shape[:-1], 1))
-        return np.concatenate([-slope, turned], axis=-1)
+        beside = np.zeros((2, poses.shape[-1] - 2))
+        beside[1, 0] = -1.0  # the bearing turns with the heading; a height changes nothing
+        return np.concatenate([-slope, np.broadcast_to(beside, (*slope.shape[:-1], beside.shape[1]))], axis=-1)
 
     def pointed_at(self, poses: FloatArray, measured: FloatArray) -> FloatArray | None:
         """(..., 2) at the measured range and bearing."""
@@ -141,7 +142,7 @@ class _OneComponent(RangeBearing):
         return super().noise(poses, points)[..., self.component]
 
     def pose_jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
-        """(..., 1, 3)."""
+        """(..., 1, 3 or 4)."""
         return super().pose_jacobian(poses, points)[..., self.component, :]
 
     def pointed_at(self, poses: FloatArray, measured: FloatArray) -> None:  # noqa: ARG002

@@ -120,7 +120,7 @@ def test_errors_of_a_planner_are_raised() -> None:
         raise RuntimeError("broken")
 
     with pytest.raises(RuntimeError, match="broken"):
-        Tracker(team(), planner=broken, time_limit=1.0).step()
+        Tracker(team(), planner=broken, time_limit=1.0, strict=True).step()
 
 
 @pytest.mark.parametrize(
@@ -148,14 +148,14 @@ def test_errors_of_a_planner_are_raised() -> None:
         ({"now": 1e9}, "now must be within 10000 sampling periods of the last step's, by 10005 s"),
         ({"measurements": [None]}, r"measurements\[0\] must be a Measurement"),
         ({"measurements": None}, "measurements must be Measurements; got None"),
-        ({"measurements": [Measurement(robot=0, target=1, values=(1e300, 0.0))]}, r"estimates must stay within 1e\+12"),
+        ({"measurements": [Measurement(robot=0, target=1, values=(1e300, 0.0))]}, r"values must stay within 1e\+12"),
         ({"poses": np.full((4, 3), 1e200)}, r"poses must stay within 1e\+12"),
         ({"poses": np.zeros((2, 3))}, "poses must have shape"),
         ({"poses": np.full((4, 3), np.nan)}, "poses must be finite"),
     ],
 )
 def test_bad_input_leaves_the_state_as_it_was(arguments, text: str) -> None:
-    tracker = Tracker(team())
+    tracker = Tracker(team(), strict=True)
     tracker.step(now=5.0)
     before = tracker.state
     with pytest.raises(InputError, match=text) as caught:
@@ -169,7 +169,7 @@ def test_bad_states_and_arguments() -> None:
     good = Tracker(scenario).state.to_dict()
     changes = {
         "format": "else",
-        "version": 3,
+        "version": 4,
         "moments": [],
         "poses": [[0.0, 0.0, 0.0]],
         "steps": -1,
