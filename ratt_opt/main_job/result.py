@@ -11,7 +11,7 @@ from ratt_opt.budget import Budget
 from ratt_opt.certificates.certification import CERTIFICATE, NOT_ASKED_FOR, Certification
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.errors import ProofError
-from ratt_opt.findings.bound import AssessedPlan, Findings
+from ratt_opt.findings import AssessedPlan, Findings
 from ratt_opt.report.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.latex import latex_of

@@ -11,7 +11,7 @@ from ratt_opt.report.tables import share_text
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ratt_opt.findings.bound import Findings
+    from ratt_opt.findings import Findings
 
 __all__ = ["bar_ends", "draw_bars"]
 

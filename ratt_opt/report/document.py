@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.findings.bound import AssessedPlan, Findings
+    from ratt_opt.findings import AssessedPlan, Findings
 
 __all__ = ["FORMAT", "VERSION", "attack_document", "plan_document", "report_document"]
 

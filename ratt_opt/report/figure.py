@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ratt_opt.findings.bound import Findings
+    from ratt_opt.findings import Findings
     from ratt_opt.report.picture import Picture
 
 __all__ = ["plan_figure", "save_figure"]

@@ -15,7 +15,7 @@ from ratt_opt.report.tables import share_text
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.findings.bound import AssessedPlan, Findings
+    from ratt_opt.findings import AssessedPlan, Findings
 
 __all__ = ["html_table", "plan_view", "report_view"]
 

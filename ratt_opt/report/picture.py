@@ -11,7 +11,7 @@ from ratt_opt.report.description import View, describe, named
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
-    from ratt_opt.findings.bound import AssessedPlan, Findings
+    from ratt_opt.findings import AssessedPlan, Findings
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.report.description import Description
 

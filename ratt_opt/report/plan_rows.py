@@ -9,7 +9,7 @@ from ratt_opt.report.description import describe
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.findings.bound import Findings
+    from ratt_opt.findings import Findings
 
 __all__ = ["PLAN_COLUMNS", "plan_rows"]
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
     from ratt_opt.attackers.link_choice.best_links import BestLinks
     from ratt_opt.certificates.certification import Certification
-    from ratt_opt.findings.bound import Findings
+    from ratt_opt.findings import Findings
     from ratt_opt.problem import Attack
 
 __all__ = [

@@ -16,7 +16,7 @@ from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 
 if TYPE_CHECKING:
-    from ratt_opt.findings.bound import Findings
+    from ratt_opt.findings import Findings
 
 __all__ = ["FIGURES", "FILES", "write_figures", "write_numbers", "write_report", "write_verdict"]
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.findings.bound import AssessedPlan, Findings
+    from ratt_opt.findings import AssessedPlan, Findings
     from ratt_opt.report.picture import Picture
     from ratt_opt.report.spots import Box
 

@@ -21,7 +21,7 @@ from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, ve
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.findings.bound import AssessedPlan, Findings
+    from ratt_opt.findings import AssessedPlan, Findings
 
 __all__ = ["report_page"]
 

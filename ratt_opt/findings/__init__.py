@@ -1,1 +1,0 @@
-"""What was found, as data: below what draws it and what hands it to the user."""
