@@ -9,7 +9,7 @@ node of the least bound is divided first: its bound is one on all attacks.
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from itertools import combinations
+from itertools import chain, combinations, islice
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from ratt_opt.budget import Stop
 from ratt_opt.graph.few_cuts import partitions_by_few_cuts
 from ratt_opt.problem import Attack
+from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -27,6 +28,10 @@ __all__ = ["AttackTree", "try_every_attack"]
 MOST_OPEN = 200_000
 """Nodes kept by their bounds, some hundred megabytes; beyond, what the next one is divided into is searched in depth,
 which keeps few more."""
+
+
+AT_ONCE = 1000
+"""Sets of blinded robots whose groups are valued in one batch."""
 
 
 class _Node(NamedTuple):
@@ -166,24 +171,30 @@ def _order(single: FloatArray, links: frozenset[tuple[int, int]]) -> list[int]:
 
 
 def try_every_attack(task: AttackTask) -> Stop:
-    """Find the worst attack of a plan by trying all; relies on a non-decreasing objective.
+    """Find the worst attack of a plan by trying all.
 
-    Then some worst attack uses its whole budgets. A robot blinded in one group leaves the others as they are, so each
-    set of robots is valued once.
+    If links can be cut it relies on a non-decreasing objective: then some worst attack uses its whole budgets.
+    Otherwise all smaller sets of robots are blinded too. A robot blinded in one group leaves the others as they are, so
+    each set of robots is valued once; many are valued in one batch.
 
     Raises
     ------
     OutOfBudget : the time is up, or no node is left; the bracket keeps the worst attack tried.
     """
     threat, worth = task.problem.threat, dict[frozenset[int], float]()
+    f, plan = unmetered(task.problem.objective), task.values.plan
     free = sorted(set(range(task.problem.n_robots)) - threat.protected_robots)
+    sizes = [threat.n_blinded] if threat.n_cut else range(threat.n_blinded, -1, -1)
     for cut, groups in partitions_by_few_cuts(threat, task.budget):
-        for blinded in map(frozenset, combinations(free, threat.n_blinded)):
+        blinded = chain.from_iterable(combinations(free, size) for size in sizes)
+        while some := list(map(frozenset, islice(blinded, AT_ONCE))):
             task.budget.check()
-            left = [group - blinded for group in groups]
-            for group in left:
-                if group not in worth:
-                    worth[group] = task.values(group)
-            task.bracket.offer(Attack(blinded, cut), max(worth[group] for group in left))
+            left = [[group - blind for group in groups] for blind in some]
+            new = list({group: None for parts in left for group in parts if group not in worth})
+            worth.update(zip(new, task.values.values_of(new).tolist(), strict=True))
+            for blind, parts in zip(some, left, strict=True):
+                if max(worth[group] for group in parts) < task.bracket.upper:
+                    task.budget.evaluate(len(parts))  # valued alone: batches may round otherwise
+                    task.bracket.offer(Attack(blind, cut), max(f(plan[sorted(group)]) for group in parts))
     task.bracket.raise_lower(task.bracket.upper)
     return Stop.CLOSED

@@ -38,7 +38,7 @@ and 30 robots with a criterion of one's own were 0.6 to 6 % milder than the wors
 
 USER_FUNCTION: tuple[Stage[Team], ...] = (
     Stage("single robots", Team.singles, Team.is_valued_at_once),
-    Stage("every attack", Team.every_attack, Team.has_few_attacks_and_no_table),
+    Stage("every attack", Team.every_attack, Team.has_few_attacks_by_value),
     Stage("greedy steps and exchanges", Team.exchanges, Team.is_valued_at_once),
     Stage("annealed values", Team.annealed_values, Team.anneals_values, ANNEALED_SHARE),
     Stage("thresholds", Team.thresholds, Team.has_a_table),

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from math import isinf
+from math import comb, isinf
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.all_sets import LARGEST_VALUED, AllSets, sets_can_be_looked_at
 from ratt_opt.attackers.any_function import annealed_attacks, any_bound, exchange_attack
 from ratt_opt.attackers.attack_tree import AttackTree, try_every_attack
 from ratt_opt.budget import Stop
-from ratt_opt.graph.few_cuts import attacks_are_few
+from ratt_opt.graph.few_cuts import MOST_ATTACKS, attacks_are_few
 
 if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask, Resumable
@@ -44,9 +44,14 @@ class TeamAttack:
         """More robots, at most 20,000 attacks, links not all alike."""  # else sizes of groups are fewer still
         return not self._threat.links_alike and attacks_are_few(self._threat)
 
-    def has_few_attacks_and_no_table(self) -> bool:
-        """More than 20 robots, at most 20,000 attacks."""
-        return self.task.problem.n_robots > LARGEST_VALUED and self.has_few_attacks()
+    def has_few_attacks_by_value(self) -> bool:
+        """More than 20 robots, at most 20,000 attacks; or no link attacks, fewer blinded sets than half a table."""
+        n_robots, threat = self.task.problem.n_robots, self._threat
+        if threat.n_cut == 0:
+            free = n_robots - len(threat.protected_robots)
+            blinded = sum(comb(free, k) for k in range(threat.n_blinded + 1))
+            return bool(blinded <= min(MOST_ATTACKS, 2 ** (n_robots - 1)))
+        return n_robots > LARGEST_VALUED and self.has_few_attacks()
 
     def anneals_values(self) -> bool:
         """A limit, too many sets for a table, no other search asks."""

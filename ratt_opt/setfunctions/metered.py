@@ -8,10 +8,12 @@ import numpy as np
 
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.running.pace import Pace, PaceParams
-from ratt_opt.setfunctions.base import SetFunction, TableFunction, check_table_size, checked_values
+from ratt_opt.setfunctions.base import SetFunction, TableFunction, check_table_size, checked_values, finite_values
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, FloatArray
+    from collections.abc import Callable
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
 
 __all__ = ["Metered", "metered", "table_within", "unmetered"]
@@ -63,13 +65,23 @@ class Metered(SetFunction):
         self._known.update(zip(new, values.tolist(), strict=True))
         return np.array([self._known[key] for key in keys])
 
+    def extensions(self, base: IntArray, candidates: IntArray) -> FloatArray:
+        """(C,) values ``f(base + {e})``; by the function's own formula, not kept, if it has one."""
+        if type(self.f).extensions is SetFunction.extensions:
+            return super().extensions(base, candidates)
+        return self._in_parts(len(candidates), lambda rows: finite_values(self.f.extensions(base, candidates[rows])))
+
     def _asked(self, membership: BoolArray) -> FloatArray:
-        values, done = np.empty(len(membership)), 0
-        while done < len(values):
+        return self._in_parts(len(membership), lambda rows: checked_values(self.f, membership[rows]))
+
+    def _in_parts(self, count: int, values_of: Callable[[slice], FloatArray]) -> FloatArray:
+        """(count,) values, few at once, so that the clock is looked at in between."""
+        values, done = np.empty(count), 0
+        while done < count:
             self._budget.check()
-            rows = int(min(self._pace.units, len(values) - done, self._budget.evaluations_left))
+            rows = int(min(self._pace.units, count - done, self._budget.evaluations_left))
             with self._pace.timed(rows):
-                values[done : done + rows] = checked_values(self.f, membership[done : done + rows])
+                values[done : done + rows] = values_of(slice(done, done + rows))
             self._budget.evaluate(rows)
             done += rows
         return values

@@ -1,14 +1,18 @@
-"""Plans improved element by element against the attacks known so far."""
+"""Plans improved by exchanges of one robot's element, judged by the attacks known so far; kicks beyond them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
+    from collections.abc import Iterable
+
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
@@ -28,36 +32,86 @@ class Climbing:
         self._asked = attacks.problem.objective
 
     def climbed(self, elements: IntArray, part: Budget) -> IntArray:
-        """Change one robot's element at a time while the known attacks leave more, within a part of the budget."""
+        """Exchange one robot's element at a time while the known attacks leave more, within a part of the budget.
+
+        All elements of a robot are valued in one batch, and the best of them is taken.
+        """
         self._asked = metered_problem(self._attacks.problem, part).objective
         current = elements.copy()
         try:
-            value, unchanged, i = self._value(elements), 0, 0
+            value, unchanged, i = self.value(elements), 0, 0
             while unchanged < len(current):
                 unchanged += 1
-                for e in self._problem.choices[i]:
-                    other = current.copy()
-                    other[i] = e
-                    least = value + self._problem.objective.least_improvement(value)
-                    if e != current[i] and (better := self._value(other)) > least:
-                        current, value, unchanged = other, better, 0
+                part.check()
+                found = self._best_exchange(current, i, value)
+                if found is not None:
+                    current[i], value = found
+                    unchanged = 0
                 i = (i + 1) % len(current)
         except OutOfBudget:
             self._budget.check()
-        self._asked = self._attacks.problem.objective
+        finally:
+            self._asked = self._attacks.problem.objective
         return current
+
+    def kicked(self, elements: IntArray, rng: np.random.Generator, robots: int) -> IntArray:
+        """Give some robots other elements at random."""
+        other = elements.copy()
+        for i in rng.permutation(len(elements))[:robots]:
+            other[i] = rng.choice(self._problem.choices[i])
+        return other
 
     def worth(self, elements: frozenset[int]) -> float:
         """Value of a set of elements, within the part of the budget that is being spent."""
-        if elements not in self._known:
-            if len(self._known) > MOST_KEPT:
-                self._known.clear()
-            self._known[elements] = self._asked(elements)
-        return self._known[elements]
+        return self._worth_of([elements])[0]
 
-    def _value(self, elements: IntArray) -> float:
+    def value(self, elements: IntArray) -> float:
         """What the known attacks leave of a plan."""
-        return min(max(self._group(elements, group) for group in groups) for groups in self._attacks.known.values())
+        return min(self._team_values(elements))
 
-    def _group(self, elements: IntArray, group: frozenset[int]) -> float:
-        return self.worth(frozenset(elements[sorted(group)].tolist()))
+    def _best_exchange(self, current: IntArray, robot: int, value: float) -> tuple[int, float] | None:
+        """The element of one robot with which the known attacks leave most, and what they leave; ``None`` if no more.
+
+        Attacks that leave least now come first: few elements are left for the others.
+        """
+        goal = value + self._problem.objective.least_improvement(value)
+        choice = self._problem.choices[robot]
+        left = choice[choice != current[robot]]
+        low: FloatArray = np.full(len(left), np.inf)
+        known = list(self._attacks.known.values())
+        for position in np.argsort(self._team_values(current), kind="stable"):
+            low = np.minimum(low, self._exchanged(current, robot, known[position], left))
+            left, low = left[low > goal], low[low > goal]
+            if not len(left):
+                return None
+        best = int(low.argmax())
+        return int(left[best]), float(low[best])
+
+    def _exchanged(self, current: IntArray, robot: int, groups: list[frozenset[int]], left: IntArray) -> FloatArray:
+        """(K,) what one attack leaves if the robot takes each of the elements ``left``."""
+        others = self._worth_of([_elements(current, group) for group in groups if robot not in group])
+        values: FloatArray = np.full(len(left), max(others, default=-np.inf))
+        for group in groups:
+            if robot in group:
+                base = current[sorted(group - {robot})]
+                values = np.maximum(values, self._asked.extensions(base, left))
+        return values
+
+    def _team_values(self, elements: IntArray) -> list[float]:
+        """What each of the known attacks leaves."""
+        groups = [[_elements(elements, group) for group in parts] for parts in self._attacks.known.values()]
+        flat = iter(self._worth_of([group for parts in groups for group in parts]))
+        return [max(next(flat) for _ in parts) for parts in groups]
+
+    def _worth_of(self, sets: list[frozenset[int]]) -> list[float]:
+        """Values of sets; those that are not known are computed in one batch."""
+        if len(self._known) > MOST_KEPT:
+            self._known.clear()
+        new = list({one: None for one in sets if one not in self._known})
+        if new:
+            self._known.update(zip(new, self._asked.values_of(new).tolist(), strict=True))
+        return [self._known[one] for one in sets]
+
+
+def _elements(plan: IntArray, group: Iterable[int]) -> frozenset[int]:
+    return frozenset(plan[sorted(group)].tolist())
