@@ -1,10 +1,9 @@
-"""Exact attacks and best plans on the networks that radio teams have; attacks also against plain annealing.
+"""Exact attacks and best plans on the networks that radio teams have.
 
 Run as ``python -m analysis.benchmarks.networks [attack maxmin] [--robots 24 30 50 100] [--families dense ...]
-[--budgets fifth third random] [--seeds K] [--first-seed K] [--seconds S] [--processor] [--plain-seconds P]
-[--objective trace] [--earlier TREE] [--log FILE]``. Attacked are RATT's plans, under three pairs of budgets: a fifth of
-the robots and 15 % of the links, a third and 30 %, and random ones. ``--earlier`` asks the edition in another source
-tree for the same, too. Limits are wall time, or, with ``--processor``, what a busy machine gave.
+[--budgets fifth third random] [--seeds K] [--first-seed K] [--seconds S] [--processor] [--objective trace]
+[--log FILE]``. Attacked are RATT's plans, under three pairs of budgets: a fifth of the robots and 15 % of the links, a
+third and 30 %, and random ones. Limits are wall time, or, with ``--processor``, what a busy machine gave.
 """
 
 from __future__ import annotations
@@ -18,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import ratt_opt as ro
-from analysis.benchmarks.earlier_edition import earlier_bracket
 from analysis.benchmarks.timing import count_processor_time
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from ratt_opt import Problem
-    from ratt_opt._validation import IntArray
 
 TARGETS = {24: 25, 30: 25, 50: 30, 100: 100}
 SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
@@ -55,20 +52,14 @@ def network_problem(family: str, robots: int, budgets: str, seed: int, objective
     return ro.network_scenario(family, robots, TARGETS[robots], **options).problem(objective)
 
 
-def attacked(problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:
-    """The exact attacker's bracket, what plain annealing finds, and the bracket of an earlier edition if asked."""
+def attacked(problem: Problem, options: argparse.Namespace) -> dict[str, object]:
+    """The exact attacker's bracket."""
     plan = ro.ratt(problem).elements
     began, worked = time.perf_counter(), time.process_time()
     exact = ro.worst_case_attack(problem, plan, time_limit=options.seconds)
     spent, worked = time.perf_counter() - began, time.process_time() - worked
     row: dict[str, object] = {"lower": exact.lower, "upper": exact.upper, "gap": relative_gap(exact.lower, exact.upper)}
-    row |= {"stop": exact.stop.value, "nodes": exact.nodes, "seconds": spent, "processor_seconds": worked}
-    plain = options.seconds if options.plain_seconds is None else options.plain_seconds
-    if plain > 0:
-        from analysis.benchmarks.plain_annealing import plain_annealing  # reads the clock that --processor sets
-
-        row["plain_over_exact"] = plain_annealing(problem, plan, plain, seed) / exact.upper
-    return row | earlier_edition(problem, options, plan)
+    return row | {"stop": exact.stop.value, "nodes": exact.nodes, "seconds": spent, "processor_seconds": worked}
 
 
 def planned(problem: Problem, options: argparse.Namespace) -> dict[str, object]:
@@ -79,24 +70,13 @@ def planned(problem: Problem, options: argparse.Namespace) -> dict[str, object]:
     row: dict[str, object] = {"lower": best.lower, "upper": best.upper, "gap": relative_gap(best.lower, best.upper)}
     known = best.lower if best.worst_case is None else best.worst_case.upper
     row |= {"plan_gap": relative_gap(best.lower, known), "stop": best.stop.value, "nodes": best.nodes}
-    return row | {"seconds": spent, "processor_seconds": worked} | earlier_edition(problem, options, gap=GAP)
+    return row | {"seconds": spent, "processor_seconds": worked}
 
 
-def earlier_edition(
-    problem: Problem, options: argparse.Namespace, plan: IntArray | None = None, gap: float = 0.0
-) -> dict[str, object]:
-    """The bracket of an earlier edition, of an attack on the plan or of the best plan; nothing if none is named."""
-    if options.earlier is None:
-        return {}
-    limits = {"seconds": options.seconds, "gap": gap, "processor": options.processor}
-    earlier = earlier_bracket(options.earlier, problem, options.objective, plan, **limits)
-    return {f"earlier_{name}": value for name, value in earlier.items()}
-
-
-def measured(what: str, problem: Problem, seed: int, options: argparse.Namespace) -> dict[str, object]:
+def measured(what: str, problem: Problem, options: argparse.Namespace) -> dict[str, object]:
     """One row."""
     row: dict[str, object] = {"alpha_s": problem.alpha_s, "alpha_c": problem.alpha_c}
-    return row | (attacked(problem, seed, options) if what == "attack" else planned(problem, options))
+    return row | (attacked(problem, options) if what == "attack" else planned(problem, options))
 
 
 def warm_up(objective: str) -> None:
@@ -119,8 +99,6 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--first-seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of one call")
     parser.add_argument("--processor", action="store_true", help="count seconds of the processor, on a busy machine")
-    parser.add_argument("--plain-seconds", type=float, help="of plain annealing; as the attack's if absent")
-    parser.add_argument("--earlier", type=Path, help="source tree of an earlier edition that is asked the same")
     parser.add_argument("--objective", default="trace", choices=("trace", "logdet", "maxeig"))
     parser.add_argument("--log", type=Path, help="CSV file to which every row is appended as it ends")
     return parser.parse_args()
@@ -137,7 +115,7 @@ def main() -> None:
     asked = instances(options.robots, options.families, seeds, options.objective, options.budgets)
     for n_robots, family, seed, problem in asked:
         for what, table in rows.items():
-            row = {"robots": n_robots, "family": family, "seed": seed} | measured(what, problem, seed, options)
+            row = {"robots": n_robots, "family": family, "seed": seed} | measured(what, problem, options)
             table.append(row)
             if options.log is not None:
                 append_csv(options.log.with_stem(f"{options.log.stem}_{what}"), row)
