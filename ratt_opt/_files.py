@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+import platform
+import shutil
 import stat
+import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +26,9 @@ _MIXED_TEXT = """A run was stopped while it replaced the files of this folder: s
 earlier one. Run the same command again.
 """
 
+WRITING = ".writing-"
+"""How the names of files begin that are not yet whole."""
+
 _KINDS = (
     (stat.S_ISLNK, "a symbolic link"),
     (stat.S_ISDIR, "a folder"),
@@ -34,6 +41,8 @@ _KINDS = (
 
 def output_directory(path: str | Path, *names: str) -> Path:
     """Create the folder ``path`` if needed and return it, ready to take files of these names.
+
+    What a killed run of this machine left half-written there is removed.
 
     Raises
     ------
@@ -48,6 +57,7 @@ def output_directory(path: str | Path, *names: str) -> Path:
         raise InputError("out", "must be a folder that can be written", f"{folder} ({_reason(error)})") from None
     for name in (MIXED, *names):
         output_file(folder / name)
+    _sweep(folder)
     return folder
 
 
@@ -82,7 +92,7 @@ def write_atomically(path: str | Path, write: Callable[[Path], object]) -> Path:
     """
     target = output_file(path)
     try:
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=_aside(), suffix=target.suffix)
     except (OSError, ValueError) as error:
         raise InputError("out", "must be a path that can be written", f"{target} ({_reason(error)})") from None
     os.close(handle)
@@ -120,7 +130,7 @@ def write_together(
     targets, gone = ([output_file(folder / name) for name in names] for names in (writers, outdated))
     mark = output_file(folder / MIXED)
     try:
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".writing-") as aside:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=_aside()) as aside:
             for name, write in writers.items():
                 write(Path(aside) / name)
             write_atomically(mark, lambda file: file.write_text(_MIXED_TEXT, encoding="utf-8"))
@@ -132,6 +142,40 @@ def write_together(
     except OSError as error:
         raise InputError("out", "must be a folder that can be written", f"{folder} ({_reason(error)})") from None
     return targets
+
+
+def _aside() -> str:
+    """How the names of half-written files begin: they say which process of which machine writes them."""
+    return f"{WRITING}{_machine()}-{os.getpid()}-"
+
+
+def _machine() -> str:
+    return hashlib.sha256(platform.node().encode()).hexdigest()[:8]
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what processes of this machine that run no more left aside; a running one needs its files."""
+    for left in folder.glob(f"{WRITING}{_machine()}-*-*"):
+        pid = left.name.split("-")[2]
+        if not pid.isdecimal() or _runs(int(pid)):
+            continue
+        if left.is_dir() and not left.is_symlink():
+            shutil.rmtree(left, ignore_errors=True)
+        else:
+            left.unlink(missing_ok=True)
+
+
+def _runs(pid: int) -> bool:
+    """Whether there is such a process; yes where it cannot be asked without harm."""
+    if sys.platform == "win32":
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):  # of another user, or no number of a process
+        return True
+    return True
 
 
 def _reason(error: OSError | ValueError) -> str:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -72,3 +74,34 @@ def test_files_that_belong_together_are_replaced_together_or_marked(
     monkeypatch.undo()
     write_together(tmp_path, {"a": text("new"), "b": text("new")})
     assert sorted(os.listdir(tmp_path)) == ["a", "b"]
+
+
+KILLED = """
+import os, pathlib, sys
+from ratt_opt._files import write_atomically, write_together
+
+def killed(file):
+    file.write_text("half")
+    os.kill(os.getpid(), 9)
+
+folder = pathlib.Path(sys.argv[1])
+if sys.argv[2] == "one":
+    write_atomically(folder / "a", killed)
+write_together(folder, {"a": killed})
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a process cannot be asked whether it runs")
+def test_what_killed_runs_left_is_swept(tmp_path: Path) -> None:
+    for kind in ("one", "several"):
+        subprocess.run([sys.executable, "-c", KILLED, str(tmp_path), kind], check=False)
+    assert len(list(tmp_path.glob(".writing-*"))) == 2
+    write_together(output_directory(tmp_path), {"a": lambda file: file.write_text(_others(tmp_path))})
+    assert os.listdir(tmp_path) == ["a"]
+    assert (tmp_path / "a").read_text() == "1"
+
+
+def _others(folder: Path) -> str:
+    """How many half-written files a second run leaves alone."""
+    output_directory(folder)
+    return str(len(list(folder.glob(".writing-*"))))

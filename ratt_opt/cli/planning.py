@@ -119,12 +119,16 @@ def _bound(
     wanted = certificate and not report.interrupted
     with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report"):
         files = write_numbers(replace(report, certificate=PENDING) if wanted else report, folder)
-    if not report.interrupted:
-        files += _drawn(report, folder, wanted=wanted)
+    fault: ProofError | None = None
     if wanted:
         with Step("certificate"):
-            report = _certified(report, folder, left)
-        files += [proof.path] if (proof := report.certificate.certificate) else []
+            report, fault = _certified(report, folder, left)
+    if not report.interrupted:
+        report, figures = _drawn(report, folder)
+        files += figures
+    if fault is not None:
+        raise fault
+    files += [proof.path] if (proof := report.certificate.certificate) else []
     if report.certificate.certificate is None and report.certificate.final and (folder / CERTIFICATE).exists():
         (folder / CERTIFICATE).replace(folder / EARLIER)  # it is not about this report
     if as_json:
@@ -135,26 +139,25 @@ def _bound(
         raise WorkInterrupted(f"interrupted; {folder} holds what was proved until then, {NOT_DRAWN}")
 
 
-def _drawn(report: "BoundReport", folder: Path, *, wanted: bool) -> list[Path]:
-    """The figures, drawn once all else is written; interrupted, the report says that its proof was not begun.
+def _drawn(report: "BoundReport", folder: Path) -> "tuple[BoundReport, list[Path]]":
+    """Draw the figures, once all else is written; a report whose figures cannot be drawn says so.
 
     Raises WorkInterrupted.
     """
-    from ratt_opt.report.write import write_figures, write_verdict
+    from ratt_opt.report.write import write_figures
 
     try:
         with Step("figure"):
-            return write_figures(report, folder)
+            files, remarks = write_figures(report, folder)
     except KeyboardInterrupt:
-        if wanted:
-            write_verdict(replace(report, certificate=INTERRUPTED), folder)
         raise WorkInterrupted(f"interrupted; {folder} holds the report, {NOT_DRAWN}") from None
+    return replace(report, remarks=(*report.remarks, *remarks)), files
 
 
-def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "BoundReport":
-    """The report with its certificate, or why there is none, written over the one in the folder.
+def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "tuple[BoundReport, ProofError | None]":
+    """The report with its certificate, or why there is none, written over the one in the folder; a fault in our proof.
 
-    Raises ProofError for a fault in our own proof, and WorkInterrupted; the report in the folder then says so.
+    Raises WorkInterrupted; the report in the folder then says so.
     """
     from ratt_opt.budget import Budget
     from ratt_opt.certificates.write import certify_if_possible
@@ -162,19 +165,17 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "Bound
 
     began = monotonic()
     budget = Budget(time_limit)
-    failure: Exception | None = None
+    fault: ProofError | None = None
+    interrupted = False
     try:
         proof = certify_if_possible(report.problem, report.optimum, folder / CERTIFICATE, budget, source=report.source)
     except ProofError as error:
-        proof, failure = Certification.faulty(error), error
+        proof, fault = Certification.faulty(error), error
     except KeyboardInterrupt:
-        proof, failure = (
-            INTERRUPTED,
-            WorkInterrupted(f"interrupted; {folder} holds the report, not yet its certificate"),
-        )
+        proof, interrupted = INTERRUPTED, True
     seconds = {**report.seconds, "certificate": monotonic() - began}
     report = replace(report.with_certificate(proof), seconds=seconds)
     write_verdict(report, folder)
-    if failure is not None:
-        raise failure
-    return report
+    if interrupted:
+        raise WorkInterrupted(f"interrupted; {folder} holds the report, not yet its certificate, {NOT_DRAWN}")
+    return report, fault

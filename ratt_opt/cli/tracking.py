@@ -1,5 +1,6 @@
 """``ratt-opt track``: a whole mission in simulation."""
 
+import warnings
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -75,7 +76,7 @@ def track(
     An interrupt (Ctrl-C) keeps the steps flown and exits with 130; the same command goes on from there.
     """
     from ratt_opt._files import output_directory
-    from ratt_opt.missions.drawing.write import FILES, write_mission
+    from ratt_opt.missions.drawing.write import FILES
     from ratt_opt.missions.players.planners import MaxMinPlanner, RefinedPlanner
     from ratt_opt.missions.run import run_mission
     from ratt_opt.missions.world import MissionModel
@@ -114,11 +115,21 @@ def track(
             )
             missions.append(mission)
     with Step("tables, figures and animation"), _resumable(folder):
-        files = write_mission(missions[0], folder, missions[1:])
+        files, remarks = _written(missions, folder)
     if as_json:
         print_json(missions[0].to_dict())
     else:
-        print_lines([*_summary(missions), written(files)])
+        print_lines([*_summary(missions), *remarks, written(files)])
+
+
+def _written(missions: "list[Mission]", folder: Path) -> "tuple[list[Path], list[str]]":
+    """The files of the first mission, and what is to be said of them."""
+    from ratt_opt.missions.drawing.write import write_mission
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RuntimeWarning)
+        files = write_mission(missions[0], folder, missions[1:])
+    return files, [str(warning.message) for warning in caught if warning.category is RuntimeWarning]
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from time import perf_counter
+from types import FunctionType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -242,7 +243,9 @@ class _Flight:
 
 
 def _described(value: object) -> str:
-    """A value as text, the same in every process: without the addresses of functions and objects."""
+    """A value as text, the same in every process: a function by its name, objects without their addresses."""
+    if isinstance(value, FunctionType):
+        return value.__name__
     return re.sub(r" at 0x[0-9a-f]+", "", repr(value))
 
 

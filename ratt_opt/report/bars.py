@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import bracket_text, up
+from ratt_opt.report.lettering import literal
 from ratt_opt.report.palette import INK, looks_of
 from ratt_opt.report.tables import share_text
 
@@ -57,10 +58,10 @@ def draw_bars(axes: Axes, report: Findings) -> None:
         axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight, bbox=room)
     axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
     axes.set_title(f"no plan can have more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
-    axes.set_yticks(range(len(plans)), [plan.name for plan in plans])
+    axes.set_yticks(range(len(plans)), [literal(plan.name) for plan in plans])
     axes.invert_yaxis()
     axes.set_xlim(0, ROOM * longest)
-    unit = f"[{report.unit}] " if report.unit else ""
+    unit = f"[{literal(report.unit)}] " if report.unit else ""
     what = "shortfall from the best possible" if missing else "value"
-    axes.set_xlabel(f"{report.objective}: {what} under the worst attack\n{unit}(whiskers: not decided)")
+    axes.set_xlabel(f"{literal(report.objective)}: {what} under the worst attack\n{unit}(whiskers: not decided)")
     axes.spines[["top", "right"]].set_visible(False)

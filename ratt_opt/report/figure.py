@@ -6,12 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt._files import write_atomically
 from ratt_opt._rounding import down
+from ratt_opt.errors import InputError, printable
 from ratt_opt.report.bars import draw_bars
+from ratt_opt.report.lettering import choose_fonts, literal
 from ratt_opt.report.map import draw_map, name_things
 from ratt_opt.report.tables import share_text
 from ratt_opt.running.interrupts import imported_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from matplotlib.figure import Figure
@@ -19,7 +22,21 @@ if TYPE_CHECKING:
     from ratt_opt.findings import Findings
     from ratt_opt.report.picture import Picture
 
-__all__ = ["plan_figure", "save_figure"]
+__all__ = ["draw_or_remark", "plan_figure", "save_figure"]
+
+
+def draw_or_remark(draw: Callable[[], list[Path]]) -> tuple[list[Path], tuple[str, ...]]:
+    """Return the files of figures, and a remark if they cannot be drawn: numbers never wait for a picture.
+
+    InputError : the folder cannot be written.
+    """
+    try:
+        return draw(), ()
+    except InputError:
+        raise
+    except Exception as error:  # noqa: BLE001  (whatever a drawing library or a name does)
+        fault = f"{type(error).__name__}: {error}"
+        return [], (f"the figures could not be drawn ({printable(fault)[:200]})",)
 
 
 def plan_figure(report: Findings, picture: Picture) -> Figure:
@@ -33,11 +50,12 @@ def plan_figure(report: Findings, picture: Picture) -> Figure:
     share = share_text(plan.worst_case.lower, report.upper)
     share = share if share.startswith("optimal") else f"{share} of the best possible"
     figure.suptitle(
-        f"{plan.name} plan. Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
+        f"{literal(plan.name)} plan. Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
         f"{len(attack.links)} of {len(report.problem.communication.links)} links cut.\n"
         f"Worst-case value {down(plan.worst_case.lower, 6)}: {share}.",
         fontsize=11.5,
     )
+    choose_fonts(figure)
     name_things(left, picture)
     return figure
 

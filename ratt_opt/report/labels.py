@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.report.lettering import lettering
+from ratt_opt.report.lettering import choose_fonts, literal
 from ratt_opt.report.spots import SPOTS, best_spot
 
 if TYPE_CHECKING:
@@ -43,11 +43,10 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
     for label in labels:
         style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
-        text, style["family"] = lettering(label.text)
         style["path_effects"] = halo()
-        word = axes.annotate(
-            text, (float(label.place[0]), float(label.place[1])), (0, 0), textcoords="offset points", **style
-        )
+        x, y = (float(c) for c in label.place)
+        word = axes.annotate(literal(label.text), (x, y), (0, 0), textcoords="offset points", **style)
+        choose_fonts(word)
         boxes = []
         for x, y, side in SPOTS:
             word.set(position=(x, y), ha=side)

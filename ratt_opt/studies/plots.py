@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.report.lettering import choose_fonts, literal
 from ratt_opt.report.palette import PLANNERS, looks_of
 from ratt_opt.studies.statistics import headed
 
@@ -69,7 +71,7 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
     looks = _looks(series)
     for at, width, planner, means, spread in _side_by_side(axes, groups, series):
         look: dict[str, Any] = {"color": looks[planner].colour, "hatch": looks[planner].hatch, "edgecolor": "white"}
-        look |= {"linewidth": 0, "label": LABELS.get(planner, planner)}
+        look |= {"linewidth": 0, "label": _label(planner)}
         axes.bar(at, means, 0.9 * width, yerr=spread, capsize=2, error_kw=error, **look)
     axes.axhline(0, color="black", linewidth=0.8)
 
@@ -83,9 +85,7 @@ def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Esti
             "fmt": looks[planner].marker,
             "markeredgecolor": "#222222",
         }
-        axes.errorbar(
-            at, means, spread, label=LABELS.get(planner, planner), ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look
-        )
+        axes.errorbar(at, means, spread, label=_label(planner), ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look)
 
 
 def comparison(means: Sequence[Mean], note: str) -> Figure:
@@ -106,19 +106,28 @@ def comparison(means: Sequence[Mean], note: str) -> Figure:
         draw = points if means[0].minus else bars
         draw(axes, groups, series)
         axes.axhline(0, color="black", linewidth=0.8)
-        axes.set_ylabel(headed(means[0].metric) + (f"\nminus {means[0].minus}'s" if means[0].minus else ""))
-        axes.set_title(f"attacker: {attacker}", loc="left", fontsize="medium")
+        axes.set_ylabel(
+            literal(headed(means[0].metric)) + (f"\nminus {_label(means[0].minus)}'s" if means[0].minus else "")
+        )
+        axes.set_title(f"attacker: {literal(attacker)}", loc="left", fontsize="medium")
     handles, labels = every[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 6), frameon=False)
     figure.supxlabel("\n".join(filter(None, (shared, note))), fontsize="small")
+    choose_fonts(figure)
     return figure
+
+
+def _label(planner: str) -> str:
+    return LABELS.get(planner) or literal(planner)
 
 
 def _told_apart(cases: Sequence[str]) -> tuple[str, list[str]]:
     """What all cases have in common, and what tells each apart, a line for each part of its name."""
     parts = [case.split() for case in cases]
     common = [part for part in parts[0] if all(part in other for other in parts)] if len(cases) > 1 else parts[0]
-    return " ".join(common), ["\n".join(part for part in own if part not in common) for own in parts]
+    return fill(" ".join(map(literal, common))), [
+        "\n".join(literal(part) for part in own if part not in common) for own in parts
+    ]
 
 
 def _looks(planners: Iterable[str]) -> dict[str, Look]:

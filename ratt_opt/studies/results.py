@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ __all__ = ["Results"]
 
 AT_LEAST_ZERO = ("value", "proved", "trace", "mse", "rmse", "nees")
 """Metrics that are never negative: neither is what is said of their means."""
+TABLES, FIGURES = ("means.csv", "means.tex"), ("means.png", "means.svg")
 COLUMNS = ("case", "planner", "attacker", "metric", "mean", "low", "high", "trials")
 
 
@@ -111,20 +113,30 @@ class Results:
     def save(self, folder: str | Path) -> list[Path]:
         """Write ``means.csv`` and ``means.tex``; of a study of planners also ``means.png`` and ``means.svg``.
 
+        If the figure cannot be drawn, a warning says why, and the tables are written.
+
         InputError : the folder cannot be written.
         """
-        from ratt_opt.report.figure import save_figure  # draws
+        from ratt_opt.report.figure import draw_or_remark, save_figure  # draws
 
-        out = output_directory(Path(folder))
+        out = output_directory(Path(folder), *TABLES, *FIGURES)
         caption = f"Study {self.study.name}"
         writers: dict[str, Any] = {
             "means.csv": lambda file: write_csv(file, COLUMNS, [list(row.values()) for row in _records(self.means())]),
             "means.tex": lambda file: file.write_text(self.to_latex(caption=caption), encoding="utf-8"),
         }
-        if self.study.planner_names and self.study.attacker_names and self.study.metrics:
+        files = write_together(out, writers, outdated=FIGURES)
+        if not (self.study.planner_names and self.study.attacker_names and self.study.metrics):
+            return files
+
+        def draw() -> list[Path]:
             figure = self.plot()
-            writers |= dict.fromkeys(("means.png", "means.svg"), lambda file: save_figure(figure, file))
-        return write_together(out, writers)
+            return write_together(out, dict.fromkeys(FIGURES, lambda file: save_figure(figure, file)))
+
+        figures, remarks = draw_or_remark(draw)
+        for remark in remarks:
+            warnings.warn(remark, RuntimeWarning, stacklevel=2)
+        return [*files, *figures]
 
     def mean_rows(self, *, metric: str | None = None, minus: str | None = None) -> tuple[list[str], list[list[str]]]:
         """Header and rows of the means as text: a row for each case, attacker and planner, a column for each metric."""

@@ -28,7 +28,7 @@ def test_no_text_cell_begins_like_a_formula(tmp_path_factory: pytest.TempPathFac
     write_csv(path, ("name", "number"), [(name, -1.5)])
     (_, row) = read(path)
     assert row[0].removeprefix("'") == name.removeprefix("'")
-    assert not row[0].startswith(("=", "@", "\t", "\r"))
+    assert not row[0].startswith(("=", "@", "＝", "＋", "－", "＠", "\t", "\r"))
     assert not row[0].startswith(("-", "+")) or (row[0][1:2].isdigit() and not set(row[0]) & set("|!()=@&;"))
     assert row[1] == "-1.5"
 

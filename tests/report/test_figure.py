@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
-from io import BytesIO
 from itertools import combinations
 
 import numpy as np
@@ -187,29 +185,3 @@ def test_a_file_is_the_same_each_time(drawn, tmp_path):
         save_figure(figure, tmp_path / f"{name}.png")
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
-
-
-def test_letters_that_the_font_lacks_are_taken_from_another_or_escaped(monkeypatch) -> None:
-    from matplotlib.font_manager import fontManager
-
-    from ratt_opt.report.lettering import lettering
-
-    assert lettering("drone 1")[0] == "drone 1"
-    fonts = list(fontManager.ttflist)
-    for name in ("無人機", "цель", "🚗", "a\u0600b"):
-        text, families = lettering(name)
-        assert text == name or "\\" in text
-        assert families
-    lettering.cache_clear()
-    monkeypatch.setattr(fontManager, "ttflist", [])
-    assert lettering("機 1")[0] == "\\u6a5f 1"
-    monkeypatch.setattr(fontManager, "ttflist", fonts)
-    lettering.cache_clear()
-
-
-def test_figures_of_names_in_other_scripts_say_nothing() -> None:
-    scenario = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0)
-    targets = [target.replace(name=name) for target, name in zip(scenario.targets, ("目标甲", "🚗車"), strict=True)]
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        ro.bound(scenario.replace(targets=targets), time_limit=5).plot().savefig(BytesIO(), format="svg")

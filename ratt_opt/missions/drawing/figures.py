@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import stdtrit
 
+from ratt_opt.report.lettering import choose_fonts, literal
 from ratt_opt.report.palette import INK, LOST, SURVIVING
 from ratt_opt.running.interrupts import imported_whole
 
@@ -53,8 +54,9 @@ def mission_figure(missions: Sequence[FlownMission]) -> Figure:
     for axes in (above, below):
         axes.legend(frameon=False, fontsize=8.5)
         axes.grid(visible=True, color="#eeeeee", linewidth=0.8)
-    settings = first.settings
-    above.set_title(f"planner {settings['planner']}, attacker {settings['attacker']}, attacks {settings['attacks']}")
+    said = (f"{name} {literal(str(first.settings[name]))}" for name in ("planner", "attacker", "attacks"))
+    above.set_title(", ".join(said), fontsize="medium")
+    choose_fonts(figure)
     return figure
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from ratt_opt.missions.drawing.log import save_log
 from ratt_opt.missions.drawing.player import player_page
 from ratt_opt.missions.drawing.tables import MISSION_COLUMNS, TRACK_COLUMNS, mission_rows, track_rows
 from ratt_opt.report.csv_file import write_csv
-from ratt_opt.report.figure import save_figure
+from ratt_opt.report.figure import draw_or_remark, save_figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,28 +23,42 @@ if TYPE_CHECKING:
 
 __all__ = ["FILES", "write_animation", "write_mission"]
 
-FILES = ("mission.json", "mission.csv", "tracks.csv", "mission.png", "mission.svg", "player.html", "mission.gif")
+NUMBERS = ("mission.json", "mission.csv", "tracks.csv", "player.html")
+FIGURES = ("mission.png", "mission.svg", "mission.gif")
+FILES = (*NUMBERS, *FIGURES)
 
 
 def write_mission(mission: FlownMission, folder: str | Path, others: Sequence[FlownMission] = ()) -> list[Path]:
     """Write all of ``FILES`` and return them; the figures are of the mission and ``others`` with other seeds.
 
+    Figures come last. If they cannot be drawn, a warning says why, and the other files are written.
+
     Raises
     ------
     InputError : the folder cannot be written.
     """
-    out = output_directory(folder)
-    figure = mission_figure([mission, *others])
+    out = output_directory(folder, *FILES)
     writers = (
         lambda file: write_json(file, mission.to_dict()),
         lambda file: write_csv(file, MISSION_COLUMNS, mission_rows(mission)),
         lambda file: write_csv(file, TRACK_COLUMNS, track_rows(mission)),
-        lambda file: save_figure(figure, file),
-        lambda file: save_figure(figure, file),
         lambda file: file.write_text(player_page(mission), encoding="utf-8"),
+    )
+    files = write_together(out, dict(zip(NUMBERS, writers, strict=True)), outdated=FIGURES)
+    figures, remarks = draw_or_remark(lambda: _draw(mission, out, others))
+    for remark in remarks:
+        warnings.warn(remark, RuntimeWarning, stacklevel=3)
+    return [*files, *figures]
+
+
+def _draw(mission: FlownMission, out: Path, others: Sequence[FlownMission]) -> list[Path]:
+    figure = mission_figure([mission, *others])
+    writers = (
+        lambda file: save_figure(figure, file),
+        lambda file: save_figure(figure, file),
         lambda file: save_gif(mission, file),
     )
-    return write_together(out, dict(zip(FILES, writers, strict=True)))
+    return write_together(out, dict(zip(FIGURES, writers, strict=True)))
 
 
 def write_animation(mission: FlownMission, path: str | Path) -> Path:
