@@ -21,6 +21,7 @@ from typing import Any
 ROOT = Path(__file__).parent
 NATIVE = runpy.run_path(str(ROOT / "ratt_opt" / "native" / "sources.py"))  # the package itself needs its dependencies
 LIBRARY: Path = NATIVE["LIBRARY"]
+RECORD: Path = NATIVE["RECORD"]
 ZIG = "ziglang>=0.13"
 OPTIONS = ("-std=c11", "-O3", "-fvisibility=hidden", "-shared")
 SAME_BITS = ("-ffp-contract=off",)
@@ -63,16 +64,23 @@ def _zig() -> list[str]:
     return command
 
 
-def compile_library(target: Path) -> None:
-    """Compile all sources into one library."""
-    target.parent.mkdir(parents=True, exist_ok=True)
+def compile_library(folder: Path) -> None:
+    """Compile all sources into one library in the folder, and write its size and hash beside it.
+
+    Stopped in between, it leaves a library that is not loaded.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
     compiler = system_compiler()
-    with tempfile.TemporaryDirectory() as cache:
-        caches = {"ZIG_LOCAL_CACHE_DIR": cache, "ZIG_GLOBAL_CACHE_DIR": cache}
-        command = _command(compiler or _zig(), sorted(NATIVE["SOURCES"].glob("*.c")), target)
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".compiling-") as aside:
+        caches = {"ZIG_LOCAL_CACHE_DIR": aside, "ZIG_GLOBAL_CACHE_DIR": aside}
+        made = Path(aside) / LIBRARY.name
+        command = _command(compiler or _zig(), list(NATIVE["TO_COMPILE"]), made)
         ran = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | caches)
-    if ran.returncode:
-        raise SystemExit(f"the loops do not compile: {shlex.join(command)}\n{ran.stderr}")
+        if ran.returncode:
+            raise SystemExit(f"the loops do not compile: {shlex.join(command)}\n{ran.stderr}")
+        record = NATIVE["record_of"](made.read_bytes())
+        made.replace(folder / LIBRARY.name)
+    (folder / RECORD.name).write_text(record, encoding="utf-8")
 
 
 try:
@@ -97,15 +105,16 @@ if BuildHookInterface is not None:
                 return
             from packaging.tags import sys_tags
 
-            target = LIBRARY
+            folder = LIBRARY.parent
             if version != "editable":
                 self._folder = tempfile.TemporaryDirectory()
-                target = Path(self._folder.name) / LIBRARY.name
-                build_data["force_include"][str(target)] = f"ratt_opt/native/{LIBRARY.name}"
-            compile_library(target)
+                folder = Path(self._folder.name)
+                for made in (LIBRARY.name, RECORD.name):
+                    build_data["force_include"][str(folder / made)] = f"ratt_opt/native/{made}"
+            compile_library(folder)
             build_data["pure_python"] = False
             build_data["tag"] = f"py3-none-{next(sys_tags()).platform}"
 
 
 if __name__ == "__main__":
-    compile_library(LIBRARY)
+    compile_library(LIBRARY.parent)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.errors import InputError
-from ratt_opt.native.sources import LIBRARY, SOURCES, fingerprint
+from ratt_opt.errors import InputError, printable
+from ratt_opt.native.sources import LIBRARY, RECORD, SOURCES, fault_of, fingerprint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,14 +24,24 @@ REMEDY = "install the package with pip, or, in a checkout, run python hatch_buil
 
 @cache
 def _library() -> ctypes.CDLL:
-    """Raises ``ImportError`` : it was never compiled, or from other sources."""
-    if not LIBRARY.exists():
-        raise ImportError(f"the loops of ratt_opt are not compiled: {REMEDY}")
-    library = ctypes.CDLL(str(LIBRARY))
+    """Raises ``ImportError`` : it was never compiled, from other sources, or is not what was compiled."""
+    if fault := fault_of(LIBRARY, RECORD):
+        raise ImportError(f"the loops of ratt_opt {fault}: {REMEDY}")
+    try:
+        library = ctypes.CDLL(str(LIBRARY))
+    except OSError as error:  # of another system, or a C library that is too old
+        raise ImportError(f"the loops of ratt_opt cannot be loaded here ({printable(str(error))}): {REMEDY}") from None
     library.sources.restype = ctypes.c_char_p
-    if SOURCES.is_dir() and library.sources().decode() != fingerprint():
+    if SOURCES.is_dir() and library.sources().decode() != _present():
         raise ImportError(f"the loops of ratt_opt were compiled from other sources: {REMEDY}")
     return library
+
+
+def _present() -> str:
+    try:
+        return fingerprint()
+    except OSError:
+        return "a source is missing"
 
 
 @cache
