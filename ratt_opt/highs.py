@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
 
-__all__ = ["ClaimedSolution", "LinearProgram", "Rows", "rows_of"]
+__all__ = ["ClaimedSolution", "LinearProgram", "Rows", "rows_of", "silent_solver"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ class LinearProgram:
             import highspy
 
         self._highspy = highspy
-        self._highs: Any = _silent_solver()()
+        self._highs: Any = silent_solver()()
         for name, value in {"threads": 1, "random_seed": 0, **options}.items():
             self._highs.setOptionValue(name, value)
         objective = np.asarray(cost, dtype=np.float64)
@@ -207,7 +207,7 @@ class LinearProgram:
 
 
 @cache
-def _silent_solver() -> type[Any]:
+def silent_solver() -> type[Any]:
     """HiGHS without output: since 1.16 its constructor prints, before an option can be set."""
     import highspy
 

@@ -1,0 +1,159 @@
+"""Plans against rivals, on families of instances that others published: processor seconds, one run, one row a seed.
+
+Run as ``python -m analysis.benchmarks.rivals [--only WORD] [--seconds S] [--seeds K] [--orlib FOLDER]``. Rivals are
+HiGHS's scenario program (``scenario_milp.py``; its bound is a claim) and the greedy plan with exchanges. ``open`` is
+``(upper - lower) / upper``; of the p-median rows all ends are costs, and ``open`` is a share of the cost of the plan.
+
+- Resilient coverage (Shi, Zhou, Tokekar and others 2021): R robots, each of P paths covers 5 to 15 of T targets, A
+  robots are lost.
+- p-median (OR-Library, Beasley 1990): choose p of n sites, A of them are lost.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from analysis.benchmarks.timing import count_processor_time
+
+count_processor_time()
+
+from scipy.sparse.csgraph import shortest_path  # noqa: E402
+
+import ratt_opt as ro  # noqa: E402
+from analysis.benchmarks.scenario_milp import RivalBracket, exchanges, scenario_milp  # noqa: E402
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ratt_opt._validation import BoolArray, FloatArray
+
+__all__ = ["FAMILIES", "Case", "Family"]
+
+ORLIB = Path(__file__).parents[2].parent / "shared" / "data" / "orlib"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Case:
+    """One instance: ``asked`` of the library, and the same as a sum of best elements, which the rivals take.
+
+    ``rivals`` : ``None`` if there is no such form
+    ``most`` : shown is ``most`` less the value, if it is not ``None``: a cost
+    """
+
+    asked: ro.Problem
+    rivals: ro.Problem | None = None
+    most: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Family:
+    """Instances of one name and size; ``draw`` makes that of a seed, or ``None`` if there is none."""
+
+    name: str
+    draw: Callable[[int], Case | None]
+
+
+def coverage(robots: int, paths: int, targets: int, lost: int) -> Family:
+    """Resilient coverage as the trace criterion of prior 1 and information 1e6."""
+
+    def draw(seed: int) -> Case:
+        covers = resilient_coverage(robots, paths, targets, seed)
+        owner = np.repeat(np.arange(robots), paths)
+        trace = ro.TraceObjective(np.ones((targets, 1, 1)), 1e6 * covers[:, :, None, None])
+        plain = ro.Coverage(covers, np.ones(targets))
+        return Case(asked=ro.Problem(trace, owner, None, lost, 0), rivals=ro.Problem(plain, owner, None, lost, 0))
+
+    return Family(name=f"coverage {robots}, {paths}, {targets}, {lost}", draw=draw)
+
+
+def resilient_coverage(robots: int, paths: int, targets: int, seed: int) -> BoolArray:
+    """(robots * paths, targets) whether each path covers each target."""
+    rng = np.random.default_rng(seed)
+    covers = np.zeros((robots * paths, targets), dtype=np.bool_)
+    for row in covers:
+        row[rng.integers(0, targets, size=rng.integers(5, 16))] = True
+    return covers
+
+
+def p_median(number: int, lost: int, folder: Path = ORLIB) -> Family:
+    """One instance of OR-Library, whatever the seed."""
+
+    def draw(seed: int) -> Case | None:
+        if seed > 0 or not (folder / f"pmed{number}.txt").exists():
+            return None
+        distance, facilities = read_p_median(folder / f"pmed{number}.txt")
+        sites, far = len(distance), float(distance.max())
+        f = ro.FacilityLocation(np.tile(far - distance, (facilities, 1)))
+        problem = ro.Problem(f, np.repeat(np.arange(facilities), sites), None, lost, 0)
+        return Case(asked=problem, rivals=problem, most=far * sites)
+
+    return Family(name=f"pmed{number}, {lost} lost", draw=draw)
+
+
+def read_p_median(path: Path) -> tuple[FloatArray, int]:
+    """(n, n) shortest paths between sites, and the number of facilities; of parallel links the last one counts."""
+    numbers = np.array(path.read_text(encoding="ascii").split(), dtype=np.int64)
+    sites, facilities = int(numbers[0]), int(numbers[2])
+    lengths = np.zeros((sites, sites))
+    for i, j, length in numbers[3:].reshape(-1, 3):
+        lengths[i - 1, j - 1] = lengths[j - 1, i - 1] = length
+    return np.asarray(shortest_path(lengths, method="D")), facilities
+
+
+FAMILIES: tuple[Family, ...] = (
+    coverage(10, 7, 100, 3),
+    coverage(15, 7, 150, 6),
+    *(p_median(number, lost) for lost in (0, 1, 2) for number in (1, 2, 3, 4, 6)),
+)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print a row for each instance."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", help="families whose name holds this word")
+    parser.add_argument("--seconds", type=float, default=60.0, help="processor seconds of each search and rival")
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--without-rivals", action="store_true")
+    options = parser.parse_args(arguments)
+    print(f"{'instance':24} {'seed':>4} {'':>10} {'lower':>12} {'upper':>12} {'open':>8} {'seconds':>8}")
+    for family in FAMILIES:
+        for seed in range(options.seeds) if options.only in family.name else ():
+            case = family.draw(seed)
+            if case is not None:
+                compare(f"{family.name:24} {seed:4}", case, options.seconds, rivals=not options.without_rivals)
+
+
+def compare(label: str, case: Case, seconds: float, *, rivals: bool) -> None:
+    """Print the rows of one instance: the library's, then the rivals'."""
+    began = time.process_time()
+    found = ro.solve_maxmin(case.asked, time_limit=seconds)
+    show(label, "solve", RivalBracket(lower=found.lower, upper=found.upper, seconds=_since(began)), case.most)
+    if case.rivals is not None and rivals:
+        began = time.process_time()
+        walked = exchanges(case.rivals, ro.greedy(case.rivals), seconds)
+        walked = RivalBracket(lower=walked.lower, upper=np.inf, seconds=_since(began))
+        show(label, "exchanges", walked, case.most)
+        show(label, "HiGHS", scenario_milp(case.rivals, seconds), case.most)
+
+
+def show(label: str, who: str, found: RivalBracket, most: float | None) -> None:
+    """Print one row."""
+    lower, upper = found.lower, found.upper
+    share = (upper - lower) / (upper if most is None else most - lower) if upper < np.inf else np.inf
+    if most is not None:
+        lower, upper = most - upper, most - lower
+    print(f"{label} {who:>10} {lower:12.6g} {upper:12.6g} {share:8.2%} {found.seconds:8.1f}", flush=True)
+
+
+def _since(began: float) -> float:
+    return time.process_time() - began
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+"""The benchmark against rivals: its families, and rivals that are right on instances small enough to enumerate."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+
+
+@pytest.fixture
+def rivals(monkeypatch):
+    monkeypatch.setattr(time, "monotonic", time.monotonic)  # the benchmark lets limits count processor seconds
+    from analysis.benchmarks import rivals
+
+    return rivals
+
+
+@pytest.mark.parametrize("lost", [0, 1, 2])
+def test_rivals_are_right_on_a_small_instance(rivals, lost):
+    case = rivals.coverage(4, 3, 12, lost).draw(0)
+    best = ro.exhaustive_optimum(case.rivals).lower
+    program = rivals.scenario_milp(case.rivals, 20)
+    walked = rivals.exchanges(case.rivals, ro.greedy(case.rivals), 20)
+    assert program.lower == pytest.approx(best)
+    assert program.upper == pytest.approx(best)
+    assert walked.lower <= best
+    assert ro.solve_maxmin(case.asked).lower == pytest.approx(best, rel=1e-5)
+
+
+def test_one_list_names_every_family_once(rivals):
+    names = [family.name for family in rivals.FAMILIES]
+    assert len(set(names)) == len(names)
+
+
+def test_p_median_files_give_shortest_paths(rivals, tmp_path):
+    (tmp_path / "pmed1.txt").write_text("3 3 1\n1 2 5\n2 3 1\n1 2 2\n", encoding="ascii")
+    distance, facilities = rivals.read_p_median(tmp_path / "pmed1.txt")
+    assert facilities == 1
+    assert distance.tolist() == [[0, 2, 3], [2, 0, 1], [3, 1, 0]]
+    case = rivals.p_median(1, 0, tmp_path).draw(0)
+    best = ro.solve_maxmin(case.asked)
+    assert case.most - best.lower == 3  # at the second site
+    assert rivals.p_median(1, 0, tmp_path).draw(1) is None
+    assert np.array_equal(case.asked.robot, np.zeros(3))
