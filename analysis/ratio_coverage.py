@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from analysis.ratios.best_of import best_of_three
+from analysis.ratios.coverage_program import coverage_instance
+from analysis.ratios.shared_plan import shared_plan_ratio
 from ratt_opt import WorstCaseRatio, worst_case_ratio
 from ratt_opt.bounds.survivors import survivor_share
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
-from ratt_opt.worst_ratio.best_of import best_of_three
 from ratt_opt.worst_ratio.closed_form import KnownRatio, known_ratio
-from ratt_opt.worst_ratio.coverage_program import coverage_instance
-from ratt_opt.worst_ratio.shared_plan import shared_plan_ratio
 from ratt_opt.worst_ratio.witness import RatioQuestion
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import pytest
 
+from analysis.ratios.coverage_program import coverage_instance
 from ratt_opt import ProofError, worst_case_ratio
 from ratt_opt.worst_ratio.closed_form import known_ratio
-from ratt_opt.worst_ratio.coverage_program import coverage_instance
 from ratt_opt.worst_ratio.witness import replay
 
 

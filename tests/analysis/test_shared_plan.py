@@ -9,9 +9,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from analysis.ratios.shared_plan import exchange_gain, shared_plan_ratio
 from ratt_opt import Problem, TableFunction, exhaustive_optimum, ratt, worst_case_attack, worst_case_ratio
 from ratt_opt.worst_ratio.families import shared_plan_instance
-from ratt_opt.worst_ratio.shared_plan import exchange_gain, shared_plan_ratio
 from ratt_opt.worst_ratio.witness import PLANNERS, RatioQuestion, replay
 
 

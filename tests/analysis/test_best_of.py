@@ -6,10 +6,10 @@ from fractions import Fraction
 
 import pytest
 
+from analysis.ratios.best_of import best_of_three
+from analysis.ratios.shared_plan import shared_plan_ratio
 from ratt_opt import worst_case_ratio
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.worst_ratio.best_of import best_of_three
-from ratt_opt.worst_ratio.shared_plan import shared_plan_ratio
 from ratt_opt.worst_ratio.witness import RatioQuestion
 
 QUARTER = Fraction(1, 4)
