@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, is_dataclass, replace
 from enum import Enum
+from functools import wraps
 from math import inf, isinf
 from numbers import Real
 from time import monotonic
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from ratt_opt._validation import check_integer
 from ratt_opt.errors import InputError
+from ratt_opt.running.interrupted_searches import InterruptNote, current_note, is_noting, noting_interrupts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
-__all__ = ["Budget", "OutOfBudget", "Stop", "uninterrupted"]
+__all__ = ["Budget", "OutOfBudget", "Stop", "interruptible", "undisturbed", "uninterrupted"]
 
+P = ParamSpec("P")
 T = TypeVar("T")
 
 
@@ -51,15 +54,11 @@ class OutOfBudget(Exception):  # noqa: N818  (a signal within a search, never se
 
 
 @dataclass(slots=True)
-class _Interrupt:
-    """Whether the user interrupted; one for a budget and all its parts."""
-
-    happened: bool = False
-
-
-@dataclass(slots=True)
 class Budget:
     """Seconds, nodes and evaluations that a search may spend, and whether the user interrupted it.
+
+    Seconds are those of the clock (``time.monotonic``), as a team waits for an answer, here and in every ``time_limit``
+    of the library. A busy machine gets less done in them.
 
     A search passes its budget down and asks it in every loop that can be long. Inner searches get a
     :meth:`part` of it. Code that catches a ``KeyboardInterrupt`` to keep a bracket calls :meth:`interrupt`, so
@@ -83,7 +82,7 @@ class Budget:
     nodes: int = field(default=0, init=False)
     evaluations: int = field(default=0, init=False)
     started: float = field(default_factory=monotonic, init=False)
-    _interrupt: _Interrupt = field(default_factory=_Interrupt, init=False, repr=False)
+    _interrupt: InterruptNote = field(default_factory=current_note, init=False, repr=False)
     _outer: Budget | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -116,6 +115,13 @@ class Budget:
                 left = outer.seconds_left
                 inner.time_limit = left if time_limit is None else min(time_limit, left)
         return inner
+
+    @classmethod
+    def apart(cls, time_limit: float) -> Budget:
+        """A few seconds to finish with, which an interrupt that was noted before does not end."""
+        own = cls(time_limit)
+        own._interrupt = InterruptNote()
+        return own
 
     @property
     def elapsed(self) -> float:
@@ -212,6 +218,60 @@ class Budget:
         """Note that the user interrupted; returns the reason to stop with."""
         self._interrupt.happened = True
         return Stop.INTERRUPTED
+
+
+def interruptible(search: Callable[P, T]) -> Callable[P, T]:
+    """Let a public search return its bracket with ``INTERRUPTED`` whenever the user interrupts it.
+
+    The one rule for searches whose result says why they stopped. A first Ctrl-C is noted, and loops meet the note in
+    their budgets. If it is raised and nothing keeps a bracket, the search is begun anew with the note: it returns
+    what is known at once. A search that was interrupted says so, also if it closed its bracket. A further
+    Ctrl-C raises ``KeyboardInterrupt``.
+    """
+
+    @wraps(search)
+    def guarded(*given: P.args, **named: P.kwargs) -> T:
+        if is_noting():
+            return _noted(search, current_note(), *given, **named)
+        budget = named.get("budget")
+        note = budget._interrupt if isinstance(budget, Budget) else InterruptNote()
+        note.begun_anew = False
+        with noting_interrupts(note, _noted.__code__):
+            found = _noted(search, note, *given, **named)
+        return _as_interrupted(found) if note.happened else found
+
+    return guarded
+
+
+def _noted(search: Callable[P, T], note: InterruptNote, *given: P.args, **named: P.kwargs) -> T:
+    try:
+        return search(*given, **named)
+    except KeyboardInterrupt:
+        if note.begun_anew:
+            raise
+        note.happened = note.begun_anew = True
+        return search(*given, **named)
+
+
+def _as_interrupted(found: Any) -> Any:
+    """A result, or several by name, that says that the user interrupted; one that does not say why it stopped as is."""
+    if isinstance(found, dict):
+        return {name: _as_interrupted(one) for name, one in found.items()}
+    if not isinstance(getattr(found, "stop", None), Stop):
+        return found
+    if is_dataclass(found) and not isinstance(found, type):
+        return replace(found, stop=Stop.INTERRUPTED)
+    found.stop = Stop.INTERRUPTED
+    return found
+
+
+def undisturbed(budget: Budget, finish: Callable[[], T]) -> T:
+    """What a short last step returns; an interrupt in it is noted and the step done again."""
+    try:
+        return finish()
+    except KeyboardInterrupt:
+        budget.interrupt()
+        return finish()
 
 
 def uninterrupted(found: T) -> T:

@@ -10,7 +10,7 @@ from ratt_opt._validation import check_number
 from ratt_opt.attack.task import PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics import PartialAttack, team_values
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget, Stop, interruptible
 from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ class Criticality:
     gain_upper: float
 
 
+@interruptible
 @Step("what to protect")
 def criticality_ranking(
     problem: Problem,
@@ -150,6 +151,7 @@ class BreakingBudgets(tuple[BreakingBudget, ...]):
         return tuple(self), self.stop
 
 
+@interruptible
 @Step("the smallest budgets that break the plan")
 def breaking_budgets(
     problem: Problem,

@@ -24,7 +24,7 @@ from ratt_opt.attackers.criterion_attack import CriterionAttack
 from ratt_opt.attackers.heuristics import bounded_rational_attack
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
 from ratt_opt.running.progress import Step
@@ -45,6 +45,7 @@ are run again before its last one goes on."""
 UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
 
 
+@interruptible
 @Step("the worst attack")
 def worst_case_attack(
     problem: Problem,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ratt_opt.attack.task import PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, heuristic_result, random_attack
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
 
@@ -26,6 +26,7 @@ EXACT_SHARE = 0.9
 """Of the seconds of a survey; the heuristics need little."""
 
 
+@interruptible
 def attack_survey(
     problem: Problem,
     elements: ArrayLike,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_number
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.curvatures.any_function import any_marginals
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
 from ratt_opt.curvatures.marginals import (
@@ -77,6 +77,7 @@ class Curvature:
     marginals: Marginals = field(compare=False, repr=False)
 
 
+@interruptible
 def total_curvature(
     f: SetFunction,
     owners: ArrayLike | None = None,
@@ -114,6 +115,7 @@ def total_curvature(
     return curvature_over(domain_of(f, owners, plan), total=True, gap=check_number("gap", gap, low=0), budget=inner)
 
 
+@interruptible
 def curvature(
     f: SetFunction,
     owners: ArrayLike | None = None,

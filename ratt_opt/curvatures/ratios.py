@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.curvatures.curvature import ENUMERATION_SHARE, GAP, SECONDS, curvature_over
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
@@ -72,6 +72,7 @@ class GeneralisedCurvature:
     stop: Stop
 
 
+@interruptible
 @Step("submodularity ratio")
 def submodularity_ratio(
     f: SetFunction,
@@ -118,6 +119,7 @@ def submodularity_ratio(
     return _ratio(lower, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
+@interruptible
 @Step("generalised curvature")
 def generalised_curvature(
     f: SetFunction,

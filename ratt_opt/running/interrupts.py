@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from types import FrameType
+    from types import CodeType, FrameType
 
 __all__ = [
     "imported_whole",
     "interrupt_main_thread",
     "interrupts_afterwards",
     "interrupts_between_packages",
+    "must_wait",
 ]
 
 PACKAGE = __name__.partition(".")[0]
@@ -69,7 +70,7 @@ def interrupts_between_packages(load: Callable[[str], object], name: str) -> obj
         return load(name)
 
     def interrupt(number: int, frame: FrameType | None) -> None:
-        if _must_wait(frame):
+        if must_wait(frame, interrupts_between_packages.__code__):
             _again_later(number)
         else:
             before(number, frame)
@@ -95,9 +96,11 @@ def imported_whole(module: str) -> Any:
         raise
 
 
-def _must_wait(frame: FrameType | None) -> bool:
-    """Whether a package of others is being imported there, or who handles interrupts is being changed."""
-    outermost = interrupts_between_packages.__code__
+def must_wait(frame: FrameType | None, outermost: CodeType) -> bool:
+    """Whether a package of others is being imported there, something is collected, or handlers are being changed.
+
+    ``outermost`` : of the function in which that counts
+    """
     if frame is not None and frame.f_code is outermost:
         return True
     while frame is not None and frame.f_code is not outermost:
@@ -105,6 +108,8 @@ def _must_wait(frame: FrameType | None) -> bool:
         # Python runs this from before a module is looked for until it stands in `sys.modules` for good.
         importing = code.co_name == "_find_and_load" and code.co_filename == "<frozen importlib._bootstrap>"
         if importing and frame.f_locals["name"].partition(".")[0] != PACKAGE:
+            return True
+        if code.co_name == "__del__":  # Python drops what is raised there
             return True
         frame = frame.f_back
     return False

@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.attackers.exact import strongest_attack
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
@@ -29,6 +29,7 @@ LARGEST_SEARCH = 5_000_000
 """Most plans that are enumerated (12**6 is about 3 million)."""
 
 
+@interruptible
 @Step("all plans")
 def exhaustive_optimum(
     problem: Problem,

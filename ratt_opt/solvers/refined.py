@@ -4,11 +4,13 @@ Exchanges of single elements are judged by the attacks known: first by a mean of
 what the worst one leaves. A plan that seems better is attacked, and that attack is known from then on. If no exchange
 is left, some robots take other elements at random, and the walk goes on from there (iterated local search, Lourenço,
 Martin and Stützle 2003). In the end the best plan is attacked exactly. It is returned if it is proved to keep no less
-than RATT's plan can; otherwise RATT's plan is.
+than RATT's plan can; otherwise RATT's plan is. That proof has time of its own: on a cold or busy machine the walk may
+use up all of the limit, and what it found would be lost.
 """
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,7 +20,7 @@ from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt._values import shown
 from ratt_opt.attack.task import outward
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible, undisturbed
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
@@ -48,6 +50,28 @@ PATIENCE = 200
 """Kicks in vain after which a search without a limit of time ends: teams of six robots take a tenth of a second."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RefinedParams:
+    """Time for the last exact attacks, beyond the limit: more proves more of the plan, and overruns it by more.
+
+    ``last_share`` : of the limit [1]; ``last_seconds`` : at least, and after an interrupt [s]; ``least_share`` : but no
+    more than this share of a short limit [1]
+    """
+
+    last_share: float = 0.08
+    last_seconds: float = 0.1
+    least_share: float = 0.5
+
+    def last(self, own: Budget) -> float:
+        """Seconds for the last attacks of a search with this budget."""
+        if own.is_interrupted or own.time_limit is None:
+            return self.last_seconds
+        return max(self.last_share * own.time_limit, min(self.last_seconds, self.least_share * own.time_limit))
+
+
+PARAMS = RefinedParams()
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RefinedPlan(Plan):
     """A plan and its worst-case value: at least ``lower``, at most ``upper`` (by ``worst_case``).
@@ -67,6 +91,7 @@ class RefinedPlan(Plan):
         return f"RefinedPlan({bracket}, {self.kicks} kicks, {self.stop.name}, elements={shown(self.elements)})"
 
 
+@interruptible
 @Step("refining a plan")
 def refined(
     problem: Problem,
@@ -85,7 +110,8 @@ def refined(
     Parameters
     ----------
     problem : its objective is a criterion of information matrices
-    time_limit : seconds, attacks included; ``None`` ends after 200 kicks in vain, or ``max_kicks``
+    time_limit : seconds, attacks included; ``None`` ends after 200 kicks in vain, or ``max_kicks``. If nothing is left
+        for the last exact attacks they take a twelfth more, or a tenth of a second
     start : a plan (N,) to begin with beside RATT's
     seed : integer >= 0, of the kicks
     max_kicks : with it, and no limit of time, the plan is the same on every run
@@ -116,7 +142,29 @@ def refined(
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
-    return _best(problem, few, incumbent, first, kicks, own.stop() or stop)
+    stop = own.stop() or stop
+    starts = [among[plan] for plan in (first.elements, *given)]
+    _prove_last(incumbent, starts, own)
+    return undisturbed(own, lambda: _best(problem, few, incumbent, starts, first, kicks, stop))
+
+
+def _prove_last(incumbent: Incumbent, starts: list[IntArray], own: Budget) -> None:
+    """Attack the best plan known, then those it began with, in a time of their own if the limit left none for it."""
+    if incumbent.is_proved and not _can_be_worse(incumbent, starts):
+        return
+    with suppress(OutOfBudget):
+        last = Budget.apart(PARAMS.last(own))
+        if not incumbent.is_proved:
+            incumbent.proved.attack(incumbent.candidates.best, last.part(BEST_SHARE))
+        for plan in starts:
+            if _can_be_worse(incumbent, [plan]):
+                incumbent.proved.attack(plan, last)
+
+
+def _can_be_worse(incumbent: Incumbent, starts: list[IntArray]) -> bool:
+    """Whether less is proved of the plan in hand than one of those it began with may keep."""
+    most = max(incumbent.pool.plan_value(plan) for plan in starts)
+    return incumbent.proved.lower < most - incumbent.problem.objective.rounding
 
 
 def _meet(incumbent: Incumbent, plans: list[IntArray]) -> None:
@@ -148,17 +196,26 @@ def _walked(incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most
 
 
 def _best(  # noqa: PLR0917
-    problem: Problem, few: UndominatedProblem, incumbent: Incumbent, ratts: Plan, kicks: int, stop: Stop
+    problem: Problem,
+    few: UndominatedProblem,
+    incumbent: Incumbent,
+    starts: list[IntArray],
+    ratts: Plan,
+    kicks: int,
+    stop: Stop,
 ) -> RefinedPlan:
-    """The plan with the best proved worst case, if that is no less than RATT's; RATT's plan otherwise.
+    """The plan with the best proved worst case, if that is no less than those of RATT's plan and of the one given.
+
+    Otherwise the one of these two of which more is proved.
 
     Elements of RATT's plan that are dominated were exchanged before.
     """
-    proved, pool, first = incumbent.proved, incumbent.pool, incumbent.candidates.first
-    can_be_worse = proved.lower < pool.plan_value(first) - few.objective.rounding
-    if can_be_worse and not np.array_equal(proved.elements, first):
-        proved = ProvedPlan(incumbent.adversary, first)
-        proved.glance(first, incumbent.budget)
+    proved, pool = incumbent.proved, incumbent.pool
+    if _can_be_worse(incumbent, starts) and not any(np.array_equal(proved.elements, plan) for plan in starts):
+        proved = ProvedPlan(incumbent.adversary, starts[-1])
+        for plan in starts:
+            with suppress(OutOfBudget):  # it knows what the attacks so far proved
+                proved.glance(plan, incumbent.budget)
     unattacked = few.team_value(proved.elements, Attack())
     upper = min(unattacked, pool.plan_value(proved.elements))
     if proved.worst_case is not None:

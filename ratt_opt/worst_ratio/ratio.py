@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
 from ratt_opt.worst_ratio.class_rows import NonDecreasing, Submodular
@@ -52,6 +52,7 @@ class WorstCaseRatio:
     programs: int
 
 
+@interruptible
 @Step("the worst ratio")
 def worst_case_ratio(
     n_robots: int,

@@ -14,7 +14,7 @@ from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.link_choice.choice_search import best_choice
 from ratt_opt.attackers.link_choice.known_attacks import KnownAttacks
 from ratt_opt.attackers.link_choice.upgrades import Addition, Protection
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import check_problem
 from ratt_opt.running.progress import Step
@@ -76,6 +76,7 @@ class BestLinks(Shown):
         return f"BestLinks({list(self.links)}, {ends}, {self.stop.value}, {self.attacks} attacks)"
 
 
+@interruptible
 @Step("the best links to protect")
 def links_to_protect(
     problem: Problem,
@@ -114,6 +115,7 @@ def links_to_protect(
     return search.run()
 
 
+@interruptible
 @Step("the best links to add")
 def links_to_add(
     problem: Problem,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.budget import Budget, OutOfBudget, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph, Link
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
@@ -53,6 +53,7 @@ LARGEST_AUTOMATIC_PROGRAM = 40
 METHODS = ("auto", "milp", "spreading", "caa", "partitions", "enumeration", "counting")
 
 
+@interruptible
 @Step("the smallest largest group")
 def smallest_largest_group(
     graph: nx.Graph | CommunicationGraph,

@@ -226,12 +226,13 @@ class Adversary:
         return result
 
     def glance(self, plan: IntArray, budget: Budget) -> AttackResult:
-        """What is known of a plan at once, with the known attack that hurts it most; teaches nothing.
+        """What is known of a plan at once, with the known attack that hurts it most, or earlier exact ones.
 
         An attack of its own takes half a second if a thousand robots lose hundreds of thousands of links.
         """
-        memory, values, objective = AttackMemory(), self._known_values(self.problem, plan), self.problem.objective
-        if len(values):
+        memory = self._memories.get(plan.tobytes()) or AttackMemory()
+        values, objective = self._known_values(self.problem, plan), self.problem.objective
+        if len(values) and memory.bracket is None:
             worst = int(values.argmin())
             value = max(objective(plan[list(self.pool.groups[group])]) for group in self.pool.of_outcome[worst])
             memory.bracket = AttackBracket(self.pool.attack(worst), value, objective(()), objective.rounding)

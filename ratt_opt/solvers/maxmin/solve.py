@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import readonly
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.measured import measured_coordinates
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
@@ -41,6 +41,7 @@ ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
 
 
+@interruptible
 @Step("the best plan")
 def solve_maxmin(
     problem: Problem,
@@ -208,6 +209,7 @@ FEW_PLANS, ENUMERATION_SHARE = 300_000, 0.5
 """So few plans are evaluated one and all, if that ends in this share of the seconds left."""
 
 
+@interruptible
 def nonrobust_optimum(
     problem: Problem,
     *,
