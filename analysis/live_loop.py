@@ -79,7 +79,7 @@ def drive(steps: int, seed: int) -> Outcome:
             outcome.steps, outcome.late = outcome.steps + 1, outcome.late + (taken > PERIOD)
             outcome.longest, outcome.missed = max(outcome.longest, taken), answer["missed"]
             outcome.trace = answer["trace"]
-            poses = world.move(poses, np.array(answer["controls"]), PERIOD)
+            poses = world.move.moved(np.arange(len(poses)), poses, np.array(answer["controls"]), PERIOD)
             truth = world.motion.predict(truth, PERIOD, step * PERIOD) + 0.1 * rng.standard_normal((15, 2))
             readings = simulated_readings(world, poses, truth, rng.standard_normal((10, 15, 2)))
             measured = [(i, j, r.values[j].tolist()) for i, r in enumerate(readings) for j in range(15) if r.seen[j]]

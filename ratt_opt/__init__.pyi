@@ -74,8 +74,12 @@ from .scenario.sensors.range_bearing import (
     RangeOnly as RangeOnly,
 )
 from .scenario.sensors.position import PositionSensor as PositionSensor
+from .scenario.sensors.doppler import DopplerRadar as DopplerRadar
+from .scenario.sensors.spatial import SphericalSensor as SphericalSensor, TiltedCamera as TiltedCamera
+from .missions.models.robots import RobotMotion as RobotMotion
 from .missions.models.targets import (
     ConstantVelocity as ConstantVelocity,
+    ConstantVelocity3D as ConstantVelocity3D,
     CoordinatedTurn as CoordinatedTurn,
     KnownVelocity as KnownVelocity,
     TargetMotion as TargetMotion,

@@ -64,8 +64,10 @@ def differences(given: Scenario | InformationInput, objective: str) -> Callable[
 
 
 def _enclosable(given: Scenario) -> bool:
-    """Whether all sensors are those whose formulas stand here."""
-    return all(type(robot.sensor or given.sensor) is Sensor for robot in given.robots)
+    """Whether all sensors, motions and noises are those whose formulas stand here."""
+    noises = all(target.process_noise is None for target in given.targets)
+    motions = all(robot.motion == "unicycle" for robot in given.robots)
+    return noises and motions and all(type(robot.sensor or given.sensor) is Sensor for robot in given.robots)
 
 
 def _unequal(record: dict[str, Any], expected: dict[str, Any], computed: set[str]) -> str:
@@ -123,7 +125,7 @@ def _rounded(value: arb, *sizes: arb | float, share: float) -> arb:
 
 
 def _prior(target: Target) -> list[arb]:
-    (a, b), (_, d) = target.covariance
+    (a, b, *_), (_, d, *_) = target.covariance[:2]
     noise = arb(target.process_std) ** 2
     return [
         _rounded(a + noise, a, noise, share=OF_ENTRIES),

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.errors import InputError
 from ratt_opt.missions.memory import Memory
 from ratt_opt.missions.planning import Now, TeamPlan, plan_team
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.information_input import InformationInput, nested
-from ratt_opt.scenario.model import Scenario
+from ratt_opt.scenario.model import STATE_UNITS, Scenario
 from ratt_opt.scenario.problem_record import near_pairs
 from ratt_opt.setfunctions.information import InformationObjective
 
@@ -41,7 +43,7 @@ def first_step(scenario: object, model: MissionModel) -> InformationInput:
         alpha_s=scenario.alpha_s,
         alpha_c=scenario.alpha_c,
         weights=tuple(target.weight for target in scenario.targets),
-        labels=tuple(f"{speed:g} m/s, {turn:.4g} rad/s" for speed, turn in controls),
+        labels=scenario.control_labels(sequences.owner, controls),
         links=scenario.links if near is None else near_pairs(scenario.poses, near),
         protected_robots=scenario.protected_robots,
         protected_links=scenario.protected_links,
@@ -51,9 +53,10 @@ def first_step(scenario: object, model: MissionModel) -> InformationInput:
         robot_positions=nested(scenario.poses[:, :2]),
         element_positions=nested(poses[:, :2]),
         element_headings=tuple(poses[:, 2].tolist()),
-        element_controls=nested(controls),
+        element_controls=nested(controls) if controls.shape[1] == 2 else None,
         target_positions=nested(targets),
-        units=("m",) * objective.dimension,
+        output=None if world.reads == 2 else nested(np.eye(2, world.reads)),
+        units=STATE_UNITS[: objective.dimension],
     )
 
 

@@ -16,10 +16,10 @@ from ratt_opt.missions.ahead.horizon import (
     OUTPUTS,
     Sequences,
     control_sequences,
-    joint_position_covariance,
+    joint_covariance,
     output_matrix,
 )
-from ratt_opt.missions.models.robots import robot_motion
+from ratt_opt.missions.models.robots import RobotMotion, TeamMotion, check_robot_motion
 from ratt_opt.missions.models.sensors import check_sensor, robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, check_motion, target_motion
 from ratt_opt.problem import Attack, Problem
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.models.robots import RobotMotion
     from ratt_opt.scenario.sensor import Sensor
     from ratt_opt.scenario.sensors.model import SensorModel
     from ratt_opt.setfunctions.information import InformationObjective
@@ -52,7 +51,8 @@ class MissionModel:
     sensor : ``None`` for the scenario's sensors; ``"range and bearing"``, ``"range"`` or ``"bearing"``, a part of what
         its range-and-bearing sensors measure; a registered kind of sensor; or a :class:`Sensor` or
         :class:`SensorModel` for all robots, or one for each
-    robot_motion : ``"paper"``, or ``"arc"`` for headings that turn during the step
+    robot_motion : of unicycles ``"paper"``, or ``"arc"`` for headings that turn during the step; ``"holonomic"`` for
+        all robots, or a :class:`RobotMotion`
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
         is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
         estimate
@@ -66,7 +66,7 @@ class MissionModel:
 
     motion: str | TargetMotion = "known velocity"
     sensor: str | Sensor | SensorModel | Sequence[Sensor | SensorModel] | None = None
-    robot_motion: str = "paper"
+    robot_motion: str | RobotMotion = "paper"
     linearisation: Linearisation = "second order"
     objective: str = "trace"
     output: Literal["mean", "last"] = "mean"
@@ -81,7 +81,7 @@ class MissionModel:
         check_sensor(self.sensor)
         if not isinstance(self.motion, TargetMotion):
             check_motion(self.motion)
-        robot_motion(self.robot_motion)
+        check_robot_motion(self.robot_motion)
         if self.area is not None and not _is_rectangle(self.area):
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
         if self.beam is not None:
@@ -123,7 +123,7 @@ class World:
     horizon: int
     motion: TargetMotion = field(init=False)
     sensors: tuple[SensorModel, ...] = field(init=False)
-    move: RobotMotion = field(init=False)
+    move: TeamMotion = field(init=False)
     alike: tuple[tuple[SensorModel, IntArray], ...] = field(init=False)
     """Every different sensor with the robots that have it: what they measure is worked out together."""
 
@@ -138,18 +138,28 @@ class World:
         object.__setattr__(self, "motion", target_motion(self.model.motion, self.scenario))
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
         object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
-        object.__setattr__(self, "move", robot_motion(self.model.robot_motion))
-        if self.model.objective not in WITH_OUTPUT and self.horizon > 1:
-            rule = f"must be {' or '.join(WITH_OUTPUT)} if a plan looks several steps ahead"
+        object.__setattr__(self, "move", TeamMotion.of(self.scenario, self.model.robot_motion))
+        if self.model.objective not in WITH_OUTPUT and (self.horizon > 1 or self.reads > 2):
+            rule = (
+                f"must be {' or '.join(WITH_OUTPUT)} if a plan looks several steps ahead or a sensor reads velocities"
+            )
             raise InputError("objective", rule, self.model.objective)
+        if self.reads > self.motion.dimension:
+            rule = f"must have states of {self.reads} numbers, as a sensor reads (such as 'constant velocity')"
+            raise InputError("motion", rule, f"{self.motion.dimension} of {type(self.motion).__name__}")
 
     @property
     def period(self) -> float:
         """Sampling period [s]."""
         return self.scenario.sampling_period
 
+    @property
+    def reads(self) -> int:
+        """Numbers r of a target's state that some sensor's measurement depends on."""
+        return max(sensor.reads for sensor in self.sensors)
+
     def sequences(self, poses: FloatArray) -> Sequences:
-        """The elements of a plan from poses (N, 3), those that leave the area left out."""
+        """The elements of a plan from poses (N, p), those that leave the area left out."""
         offered = control_sequences(self.scenario, poses, self.horizon, self.move)
         if self.model.area is None:
             return offered
@@ -161,26 +171,27 @@ class World:
 
     def objective(self, belief: Belief, sequences: Sequences, time: float) -> tuple[InformationObjective, Sequences]:
         """The criterion of all sequences that are not dominated, and these; a single step keeps them all."""
-        if self.horizon > 1:
+        if self.horizon > 1 and self.reads == 2:
             kept, _ = undominated(self._blocks(sequences, self._predictions(belief, time)), sequences.owner)
             sequences = sequences.only(kept)
         return self.criterion(belief, sequences, time), sequences
 
     def criterion(self, belief: Belief, sequences: Sequences, time: float) -> InformationObjective:
-        """The criterion of these sequences: of the positions of all steps, which is all that measurements speak of.
+        """The criterion of these sequences: of the part of the state in all steps that measurements depend on.
 
-        A Gaussian's marginal is updated by what is measured of it alone, so velocities need not be carried along.
+        A Gaussian's marginal is updated by what is measured of it alone, so velocities need not be carried along unless
+        a sensor reads them; only positions count then.
         """
         predicted = self._predictions(belief, time)
         blocks = self._blocks(sequences, predicted)
-        size = 2 * self.horizon
-        information = np.zeros((*blocks.shape[:2], size, size))
+        r = self.reads
+        information = np.zeros((*blocks.shape[:2], r * self.horizon, r * self.horizon))
         for h in range(self.horizon):
-            information[:, :, 2 * h : 2 * h + 2, 2 * h : 2 * h + 2] = blocks[:, :, h]
-        prior = joint_position_covariance(predicted, self.motion, self.period)
+            information[:, :, r * h : r * h + r, r * h : r * h + r] = blocks[:, :, h]
+        prior = joint_covariance(predicted, self.motion, self.period, r)
         information = _beside(prior, information)
         weights = np.array([target.weight for target in self.scenario.targets])
-        output = output_matrix(self.model.output, self.horizon)
+        output = output_matrix(self.model.output, self.horizon, r)
         if output is None:
             return criterion_called(self.model.objective)(prior, information, weights)
         return WITH_OUTPUT[self.model.objective](prior, information, weights, output=output)
@@ -234,18 +245,17 @@ class World:
         return beliefs
 
     def _blocks(self, sequences: Sequences, predicted: list[Belief]) -> FloatArray:
-        """(E, M, H, 2, 2) information about the positions, step by step."""
+        """(E, M, H, r, r) information about what is read of the states, step by step."""
         steps = [self._information(sequences, h, ahead) for h, ahead in enumerate(predicted)]
         return np.stack(steps, axis=2)
 
     def _information(self, sequences: Sequences, h: int, ahead: Belief) -> FloatArray:
-        """(E, M, 2, 2) of the h-th step, about the positions."""
-        points = ahead.positions
-        spread = None if self.model.linearisation == "first order" else ahead.position_covariance
-        information = np.empty((len(sequences.owner), len(points), 2, 2))
+        """(E, M, r, r) of the h-th step."""
+        information = np.zeros((len(sequences.owner), len(ahead.mean), self.reads, self.reads))
         for sensor, robots in self.alike:
-            own = np.isin(sequences.owner, robots)
+            own, r = np.isin(sequences.owner, robots), sensor.reads
+            spread = None if self.model.linearisation == "first order" else ahead.covariance[:, :r, :r]
             with np.errstate(divide="ignore", invalid="ignore"):  # on top of a target there is no bearing
-                information[own] = sensor.information(sequences.poses[own, h], points, spread)
+                information[own, :, :r, :r] = sensor.information(sequences.poses[own, h], ahead.mean[:, :r], spread)
         usable = np.asarray(np.isfinite(information).all(axis=(-1, -2)))
         return readonly(np.where(usable[..., None, None], information, 0.0))

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
 
-__all__ = ["move_robots", "predict_targets"]
+__all__ = ["fly_robots", "move_robots", "predict_targets", "white_acceleration"]
 
 
 def move_robots(poses: FloatArray, controls: FloatArray, period: float) -> FloatArray:
@@ -21,7 +21,7 @@ def move_robots(poses: FloatArray, controls: FloatArray, period: float) -> Float
 
     Parameters
     ----------
-    poses : (..., 3) x [m], y [m], heading [rad]
+    poses : (..., 3 or 4) x [m], y [m], heading [rad], height [m], which stays
     controls : (..., 2) speed [m/s], turn rate [rad/s]
     period : sampling period [s]
 
@@ -33,7 +33,34 @@ def move_robots(poses: FloatArray, controls: FloatArray, period: float) -> Float
         poses[..., 0] + step * np.cos(heading),
         poses[..., 1] + step * np.sin(heading),
         heading + period * controls[..., 1],
+        *np.moveaxis(poses[..., 3:], -1, 0),
     )
+    return np.stack(np.broadcast_arrays(*moved), axis=-1)
+
+
+def fly_robots(poses: FloatArray, controls: FloatArray, period: float) -> FloatArray:
+    """Holonomic poses after one period: a robot moves in any direction of its own frame, whatever its heading.
+
+    The velocity is turned with the heading in the middle of the step. A height changes if poses and controls have one.
+
+    Parameters
+    ----------
+    poses : (..., 3 or 4) x [m], y [m], heading [rad], height [m]
+    controls : (..., 2 to 4) velocity forward and to the left [m/s], turn rate [rad/s], climb rate [m/s]
+    period : sampling period [s]
+    """
+    forward, left, turn, climb = (
+        controls[..., k] if k < controls.shape[-1] else np.zeros(controls.shape[:-1]) for k in range(4)
+    )
+    middle = poses[..., 2] + period * turn / 2
+    cosine, sine = np.cos(middle), np.sin(middle)
+    moved = [
+        poses[..., 0] + period * (forward * cosine - left * sine),
+        poses[..., 1] + period * (forward * sine + left * cosine),
+        poses[..., 2] + period * turn,
+    ]
+    if poses.shape[-1] > 3:
+        moved.append(poses[..., 3] + period * climb)
     return np.stack(np.broadcast_arrays(*moved), axis=-1)
 
 
@@ -55,3 +82,12 @@ def predict_targets(positions: FloatArray, motions: FloatArray, period: float) -
     speed, turn, heading = motions.T
     angle = heading + period * turn
     return np.asarray(positions + (period * speed)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1))
+
+
+def white_acceleration(density: FloatArray, period: float) -> FloatArray:
+    """(M, 4, 4) covariance of x, y, velocity after one period of white acceleration of these densities (M,) [m^2/s^3].
+
+    Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.2.
+    """
+    shape = np.array([[period**3 / 3, period**2 / 2], [period**2 / 2, period]])
+    return np.asarray(density[:, None, None] * np.kron(shape, np.eye(2)))

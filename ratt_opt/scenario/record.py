@@ -13,7 +13,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
-__all__ = ["NonNegative", "Number", "Positive", "Record", "Text", "Whole", "first_fault", "plain"]
+__all__ = ["NonNegative", "Number", "Positive", "Record", "Text", "Whole", "first_fault", "plain", "without_defaults"]
 
 LARGEST = 1e12
 """Physical quantities beyond this, or positive ones below its inverse, are refused: squares and
@@ -91,6 +91,12 @@ class Record(BaseModel):
 
     def _fields(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in type(self).model_fields}
+
+
+def without_defaults(record: Record, document: dict[str, Any], later: tuple[str, ...]) -> dict[str, Any]:
+    """A record's document without those ``later`` fields that say nothing: older files and digests stay the same."""
+    silent = {name for name in later if getattr(record, name) == type(record).model_fields[name].default}
+    return {name: value for name, value in document.items() if name not in silent}
 
 
 def first_fault(error: ValidationError) -> InputError:

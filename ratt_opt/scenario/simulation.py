@@ -81,6 +81,8 @@ def simulate_tracking(
         check_distinct("robot", (check_integer("robot", i, low=0, high=scenario.n_robots - 1) for i in robots))
     )
     poses = scenario.predicted_poses[_check_plan(elements, scenario.robot, scenario.n_robots)]
+    if scenario.reads > 2:
+        raise InputError("scenario", "must have sensors of positions only (run_mission draws all)", scenario.reads)
     predicted, prior = scenario.predicted_targets, scenario.prior
     truth = predicted + _correlated(rng.standard_normal((draws, *predicted.shape)), prior)
     sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]

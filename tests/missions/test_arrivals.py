@@ -85,7 +85,7 @@ def test_measurements_in_any_order_are_the_filter_in_order(seed: int, order: str
     pairs = {(float(t), int(rng.integers(2)), int(rng.integers(2))) for t in times}
     made = [(*pair, seen_from(scenario, pair[1], pair[2], rng)) for pair in sorted(pairs)]
     arrives = {m: float(np.ceil(m[0]) + rng.integers(0, 3)) for m in made}
-    tracker = Tracker(scenario, model=MissionModel(linearisation=order))
+    tracker = Tracker(scenario, model=MissionModel(linearisation=order), gate=None)
     for now in range(12):
         given_now = [Measurement(i, j, z, time=100.0 + t) for t, i, j, z in made if arrives[t, i, j, z] == now]
         rng.shuffle(given_now)
@@ -114,14 +114,14 @@ def test_uncertain_poses_inflate_the_noise(order: str) -> None:
     root = rng.normal(size=(2, 3, 3)) * [[[1.0], [1.0], [0.05]]]
     unsure = root @ root.swapaxes(-1, -2)
     made = [(1.0, i, j, seen_from(scenario, i, j, rng)) for i in range(2) for j in range(2)]
-    tracker = Tracker(scenario, model=MissionModel(linearisation=order))
+    tracker = Tracker(scenario, model=MissionModel(linearisation=order), gate=None)
     tracker.step(now=0.0)
     measured = [Measurement(i, j, z) for _, i, j, z in made]
     tracker.step(measured, now=1.0, pose_covariances=unsure)
     mean, covariance = expected(scenario, made, 1.0, order=order, pose_covariances=unsure)
     np.testing.assert_allclose(tracker.beliefs.mean, mean, rtol=1e-9)
     np.testing.assert_allclose(tracker.beliefs.covariance, covariance, rtol=1e-9)
-    exact = Tracker(scenario)
+    exact = Tracker(scenario, gate=None)
     exact.step(now=0.0)
     exact.step(measured, now=1.0)
     assert exact.beliefs.trace < tracker.beliefs.trace
@@ -224,7 +224,7 @@ def test_targets_that_come_and_go_leave_the_others_as_they_were(seed: int, motio
     scenario = standing(n_targets=3)
     new = scenario.targets[0].replace(x=40.0, y=60.0, speed=1.5, turn_rate=0.2, heading=0.7)
     model = MissionModel(motion=motion)
-    tracker, calm = Tracker(scenario, model=model), Tracker(scenario, model=model)
+    tracker, calm = Tracker(scenario, model=model, gate=None), Tracker(scenario, model=model, gate=None)
     for now in range(8):
         made = [
             Measurement(i, j, seen_from(scenario, i, j, rng), now - 0.5 if now else None)
@@ -240,13 +240,13 @@ def test_targets_that_come_and_go_leave_the_others_as_they_were(seed: int, motio
     assert tracker.targets == (0, 2, 3)
     np.testing.assert_allclose(tracker.beliefs.mean[:2], calm.beliefs.mean[[0, 2]], rtol=1e-12)
     np.testing.assert_allclose(tracker.beliefs.covariance[:2], calm.beliefs.covariance[[0, 2]], rtol=1e-12)
-    alone = Tracker(scenario.replace(targets=(new,)), model=model)
+    alone = Tracker(scenario.replace(targets=(new,)), model=model, gate=None)
     for now in np.arange(0.0, 5.25, 0.5):  # as the others' sightings part the time
         alone.step(now=now)
     np.testing.assert_allclose(tracker.beliefs.mean[2], alone.beliefs.mean[0], rtol=1e-9)
     np.testing.assert_allclose(tracker.beliefs.covariance[2], alone.beliefs.covariance[0], rtol=1e-9)
     state = TrackerState.from_dict(json.loads(json.dumps(tracker.state.to_dict())))
-    heir = Tracker(tracker.scenario, model=model, state=state)
+    heir = Tracker(tracker.scenario, model=model, state=state, gate=None)
     late = [Measurement(0, 3, (30.0, 0.3), time=6.2)]
     assert np.array_equal(heir.step(late, now=8.0).elements, tracker.step(late, now=8.0).elements)
     assert heir.state == tracker.state

@@ -76,7 +76,7 @@ def sightings(scenario, rng):
 
 
 def believed(scenario, measured, order="second order"):
-    tracker = Tracker(scenario, model=MissionModel(linearisation=order))
+    tracker = Tracker(scenario, model=MissionModel(linearisation=order), gate=None)
     tracker.step()
     tracker.step(measured)
     return tracker.beliefs

@@ -343,7 +343,7 @@ def test_bad_models_and_journals(tmp_path) -> None:
     with pytest.raises(InputError, match="model must be a MissionModel"):
         run_mission(scenario_of(), steps=1, model=3)
     for sensor in (3, "radar", [], [3]):
-        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, position, a Sensor"):
+        with pytest.raises(InputError, match="sensor must be range and bearing, range, bearing, position, doppler, "):
             MissionModel(sensor=sensor)
     with pytest.raises(InputError, match="sensor must be a SensorModel, or one for each of"):
         run_mission(scenario_of(), steps=1, model=MissionModel(sensor=[PositionSensor(1.0)]))

@@ -72,6 +72,8 @@ GOOD_AND_BAD: list[tuple[Record, dict[str, tuple[Any, Any]]]] = [
             "controls": (((1.0, 0.0),), ()),
             "sensor": (Sensor(), 3),
             "name": ("scout", "two\nlines"),
+            "z": (30.0, "high"),
+            "motion": ("holonomic", "swims"),
         },
     ),
     (
@@ -86,6 +88,10 @@ GOOD_AND_BAD: list[tuple[Record, dict[str, tuple[Any, Any]]]] = [
             "process_std": (0.0, -1.0),
             "weight": (2.0, 0.0),
             "name": ("boat", "two\nlines"),
+            "z": (30.0, "high"),
+            "climb": (-1.0, float("inf")),
+            "velocity_std": (0.5, 0.0),
+            "process_noise": (0.2, -1.0),
         },
     ),
     (

@@ -180,7 +180,10 @@ def test_parts_of_the_librarys_sensor_have_names_in_files(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("sensor", "text"),
     [
-        ({"kind": "sonar"}, r"sensor.kind must be range, bearing, position, or offered by an installed package"),
+        (
+            {"kind": "sonar"},
+            r"sensor.kind must be range, bearing, position,.*spherical, or offered by",
+        ),
         ({"kind": 3}, "sensor.kind must be text; got int"),
         ({"kind": "position", "std": -1.0}, "sensor.std must be positive; got -1"),
         ({"kind": "position", "sdt": 1.0}, "sensor must have the fields of PositionSensor; got .*sdt"),
@@ -277,7 +280,7 @@ def test_an_installed_package_offers_sensors_to_files_and_commands(tmp_path: Pat
     assert command("track", "plain.json", "--sensor", "sonar", "--steps", "2", "--out", "named").returncode == 0
     missing = command("track", "plain.json", "--sensor", "radar", "--steps", "2", "--out", "missing")
     assert missing.returncode == 2
-    assert "sensor must be range and bearing, range, bearing, position, sonar, lost" in missing.stderr
+    assert "sensor must be range and bearing, range, bearing, position, doppler, " in missing.stderr
     lost = command("bound", "lost.json", "--out", "x")
     assert lost.returncode == 2
     assert (

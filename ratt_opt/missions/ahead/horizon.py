@@ -20,11 +20,11 @@ from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.models.robots import RobotMotion
+    from ratt_opt.missions.models.robots import TeamMotion
     from ratt_opt.missions.models.targets import TargetMotion
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_position_covariance", "output_matrix"]
+__all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covariance", "output_matrix"]
 
 OUTPUTS = ("mean", "last")
 NOISE_FLOOR = 1e-6
@@ -36,7 +36,7 @@ MOST_SEQUENCES = 20_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sequences:
-    """The elements of a plan: ``owner`` (E,), ``controls`` (E, H, 2) and the ``poses`` (E, H, 3) they lead through."""
+    """The elements of a plan: ``owner`` (E,), ``controls`` (E, H, c) and the ``poses`` (E, H, p) they lead through."""
 
     owner: IntArray
     controls: FloatArray
@@ -48,7 +48,7 @@ class Sequences:
         return Sequences(*(readonly(part) for part in chosen))
 
 
-def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motion: RobotMotion) -> Sequences:
+def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motion: TeamMotion) -> Sequences:
     """All sequences of ``horizon`` controls of every robot, robot by robot, the first control slowest.
 
     InputError : a robot would have too many.
@@ -59,27 +59,32 @@ def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motio
         if count > MOST_SEQUENCES:
             raise InputError("horizon", f"must give robot {i} at most {MOST_SEQUENCES} control sequences", count)
         owner.append(np.full(count, i))
-        controls.append(np.array(list(product(robot.controls, repeat=horizon))))
+        controls.append(np.array(list(product(_wide(scenario, i), repeat=horizon))))
     owners, sequences = np.concatenate(owner), np.concatenate(controls)
     path = [poses[owners]]
     for h in range(horizon):
-        path.append(motion(path[-1], sequences[:, h], scenario.sampling_period))
+        path.append(motion.moved(owners, path[-1], sequences[:, h], scenario.sampling_period))
     return Sequences(readonly(owners), readonly(sequences), readonly(np.stack(path[1:], axis=1)))
 
 
-def extended(scenario: Scenario, sequences: Sequences, motion: RobotMotion) -> Sequences:
+def extended(scenario: Scenario, sequences: Sequences, motion: TeamMotion) -> Sequences:
     """Every sequence followed by every control of its robot, the new control fastest."""
     counts = np.array([len(robot.controls) for robot in scenario.robots])[sequences.owner]
     again = np.repeat(np.arange(len(sequences.owner)), counts)
-    added = np.concatenate([np.array(scenario.robots[i].controls) for i in sequences.owner])
-    last = motion(sequences.poses[again, -1], added, scenario.sampling_period)
+    added = np.concatenate([_wide(scenario, i) for i in sequences.owner])
+    last = motion.moved(sequences.owner[again], sequences.poses[again, -1], added, scenario.sampling_period)
     controls = np.concatenate([sequences.controls[again], added[:, None]], axis=1)
     poses = np.concatenate([sequences.poses[again], last[:, None]], axis=1)
     return Sequences(readonly(sequences.owner[again]), readonly(controls), readonly(poses))
 
 
-def joint_position_covariance(beliefs: list[Belief], motion: TargetMotion, period: float) -> FloatArray:
-    """(M, 2 H, 2 H) of the positions in all steps, from the predicted beliefs of the H steps."""
+def _wide(scenario: Scenario, robot: int) -> FloatArray:
+    """(C, c) controls of a robot, as wide as the team's."""
+    return np.asarray(scenario.controls[scenario.robot == robot])
+
+
+def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float, size: int) -> FloatArray:
+    """(M, r H, r H) of the first ``size`` r numbers of the states in all steps, from the predicted beliefs."""
     n_targets, d = beliefs[0].mean.shape
     horizon = len(beliefs)
     joint = np.zeros((n_targets, horizon * d, horizon * d))
@@ -94,17 +99,17 @@ def joint_position_covariance(beliefs: list[Belief], motion: TargetMotion, perio
         sizes = np.diagonal(joint, axis1=1, axis2=2).copy()
         sizes[:, :d] = 0.0  # the first step is known as it is
         joint += NOISE_FLOOR * sizes[:, None, :] * np.eye(horizon * d)
-    places = np.array([h * d + axis for h in range(horizon) for axis in range(2)])
+    places = np.array([h * d + axis for h in range(horizon) for axis in range(size)])
     return joint[:, places[:, None], places]
 
 
-def output_matrix(output: str, horizon: int) -> FloatArray | None:
-    """(q, 2 H) the part of all steps' positions that counts; ``None`` if that is the whole of one position.
+def output_matrix(output: str, horizon: int, size: int) -> FloatArray | None:
+    """(q, r H) the part of all steps' states that counts, positions; ``None`` if that is the whole of one position.
 
     ``"last"`` : the position at the last step; ``"mean"`` : those of all steps, over the root of their number: the
     trace is then the mean of theirs, and the largest eigenvalue that of the joint covariance over their number.
     """
-    if horizon == 1:
+    if horizon == 1 and size == 2:
         return None
-    whole = np.eye(2 * horizon)
-    return whole / horizon**0.5 if output == "mean" else whole[-2:]
+    positions = np.kron(np.eye(horizon), np.eye(2, size))
+    return np.asarray(positions / horizon**0.5 if output == "mean" else positions[-2:])

@@ -35,7 +35,7 @@ def _frame(number: int, step: MissionStep) -> dict[str, Any]:
     ellipses = [_ellipse(covariance) for covariance in step.team.belief.position_covariance]
     return {
         "step": number,
-        "robots": step.poses.tolist(),
+        "robots": step.poses[:, :3].tolist(),
         "roles": [step.role(i) for i in range(len(step.poses))],
         "links": [list(link) for link in sorted(step.links)[:MOST_LINKS]],
         "cut": [list(link) for link in sorted(step.attack.links)[:MOST_LINKS]],

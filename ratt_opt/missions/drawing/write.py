@@ -12,7 +12,7 @@ from ratt_opt.missions.drawing.animation import save_gif
 from ratt_opt.missions.drawing.figures import mission_figure
 from ratt_opt.missions.drawing.log import save_log
 from ratt_opt.missions.drawing.player import player_page
-from ratt_opt.missions.drawing.tables import MISSION_COLUMNS, TRACK_COLUMNS, mission_rows, track_rows
+from ratt_opt.missions.drawing.tables import mission_columns, mission_rows, track_columns, track_rows
 from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.figure import draw_or_remark, save_figure
 
@@ -40,8 +40,8 @@ def write_mission(mission: FlownMission, folder: str | Path, others: Sequence[Fl
     out = output_directory(folder, *FILES)
     writers = (
         lambda file: write_json(file, mission.to_dict()),
-        lambda file: write_csv(file, MISSION_COLUMNS, mission_rows(mission)),
-        lambda file: write_csv(file, TRACK_COLUMNS, track_rows(mission)),
+        lambda file: write_csv(file, mission_columns(mission), mission_rows(mission)),
+        lambda file: write_csv(file, track_columns(mission), track_rows(mission)),
         lambda file: file.write_text(player_page(mission), encoding="utf-8"),
     )
     files = write_together(out, dict(zip(NUMBERS, writers, strict=True)), outdated=FIGURES)

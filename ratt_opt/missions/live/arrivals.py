@@ -57,16 +57,17 @@ class Arrivals:
         return now - before, now
 
     def poses(self, poses: ArrayLike | None, covariances: ArrayLike | None) -> tuple[FloatArray, FloatArray]:
-        """(N, 3) poses (default: those that the last plan led to), and (N, 3, 3) their covariances, zero by default."""
+        """(N, p) poses (default: those that the last plan led to), and (N, p, p) their covariances, zero by default."""
         shape = self.state.poses.shape
         places = self.state.poses if poses is None else check_finite("poses", poses, ndim=2)
         if places.shape != shape:
             raise InputError("poses", f"must have shape {shape}", f"shape {places.shape}")
+        square = (*shape, shape[1])
         if covariances is None:
-            return readonly(places), readonly(np.zeros((shape[0], 3, 3)))
+            return readonly(places), readonly(np.zeros(square))
         unsure = check_finite("pose_covariances", covariances, ndim=3)
-        if unsure.shape != (shape[0], 3, 3):
-            raise InputError("pose_covariances", f"must have shape {(shape[0], 3, 3)}", f"shape {unsure.shape}")
+        if unsure.shape != square:
+            raise InputError("pose_covariances", f"must have shape {square}", f"shape {unsure.shape}")
         for i, matrix in enumerate(unsure):
             allowed = ROUNDING * np.abs(matrix).max()
             if np.abs(matrix - matrix.T).max() > allowed or np.linalg.eigvalsh(matrix)[0] < -allowed:

@@ -84,8 +84,8 @@ class Tracker:
     strict : measurements that cannot be taken in, and errors of the planner, are raised; the state is then as it was.
         Outliers are refused and reported all the same
 
-    ``state`` : the tracker's whole state; ``controls`` : (N, 2) speed [m/s] and turn rate [rad/s] that every robot
-    executes next.
+    ``state`` : the tracker's whole state; ``controls`` : (N, c) what every robot executes next, a unicycle's speed
+    [m/s] and turn rate [rad/s].
     ``scenario`` : the team with its present targets; needed to go on from ``state``.
 
     Raises
@@ -156,8 +156,8 @@ class Tracker:
             of the plan says why, and so does the log ``ratt_opt.tracker``.
         now : the caller's clock [s]; it must not run backwards, and the belief is predicted by what has passed.
             ``None`` is one sampling period after the last step.
-        poses : (N, 3) poses that the robots know of themselves; by default those that the last plan led to
-        pose_covariances : (N, 3, 3) of these poses [m^2], [m rad], [rad^2]; exact by default. They are taken for
+        poses : (N, 3 or 4) poses that the robots know of themselves; by default those that the last plan led to
+        pose_covariances : (N, p, p) of these poses [m^2], [m rad], [rad^2]; exact by default. They are taken for
             further noise of every measurement made from there.
         strict : as the tracker's, for this step
 
@@ -227,8 +227,9 @@ class Tracker:
 
     def _start(self) -> TrackerState:
         scenario = self.scenario
-        first = np.array([robot.controls[0] for robot in scenario.robots])
-        exact = readonly(np.zeros((scenario.n_robots, 3, 3)))
+        elements = np.searchsorted(scenario.robot, np.arange(scenario.n_robots))
+        first, width = scenario.controls[elements], scenario.poses.shape[1]
+        exact = readonly(np.zeros((scenario.n_robots, width, width)))
         belief, fresh = self.world.motion.initial(scenario), (0,) * scenario.n_targets
         return TrackerState(
             time=0.0,
@@ -244,11 +245,12 @@ class Tracker:
     def _checked(self, state: TrackerState) -> TrackerState:
         if not isinstance(state, TrackerState):
             raise InputError("state", "must be a TrackerState", type(state).__name__)
-        n, m, d = self.scenario.n_robots, self.scenario.n_targets, self.world.motion.dimension
-        expected = {"poses": (n, 3), "targets": (m,), "controls": (n, self.world.horizon, 2)}
+        (n, p), c = self.scenario.poses.shape, self.scenario.controls.shape[1]
+        m, d = self.scenario.n_targets, self.world.motion.dimension
+        expected = {"poses": (n, p), "targets": (m,), "controls": (n, self.world.horizon, c)}
         found = {"poses": state.poses.shape, "targets": (len(state.targets),), "controls": state.controls.shape}
         for moment in state.moments:
-            expected |= {"mean": (m, d), "refused": (m,), "moment poses": (n, 3), "pose_covariances": (n, 3, 3)}
+            expected |= {"mean": (m, d), "refused": (m,), "moment poses": (n, p), "pose_covariances": (n, p, p)}
             found |= {"mean": moment.belief.mean.shape, "refused": (len(moment.refused),)}
             found |= {"moment poses": moment.poses.shape, "pose_covariances": moment.pose_covariances.shape}
             for name, shape in expected.items():

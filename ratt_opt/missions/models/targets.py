@@ -12,6 +12,7 @@ from ratt_opt._validation import FloatArray, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
+from ratt_opt.scenario.motion import white_acceleration
 
 if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = [
     "TARGET_MOTIONS",
     "ConstantVelocity",
+    "ConstantVelocity3D",
     "CoordinatedTurn",
     "KnownVelocity",
     "TargetMotion",
@@ -27,7 +29,7 @@ __all__ = [
 ]
 
 VELOCITY_STD = 1.0
-"""Standard deviation per axis of what is believed of a target's velocity at first [m/s]; a scenario does not say."""
+"""Standard deviation per axis of the first belief of a velocity [m/s], if a target does not say (``velocity_std``)."""
 TURN_STD = 0.05
 """The same of its turn rate [rad/s]: half the largest of the paper's."""
 TURN_NOISE = 0.01
@@ -85,7 +87,7 @@ class KnownVelocity(ByValue, TargetMotion):
         """The scenario's targets."""
         targets = scenario.targets
         motions = np.array([(target.speed, target.turn_rate, target.heading) for target in targets])
-        return cls(readonly(motions), _process_std(scenario), scenario.sampling_period)
+        return cls(readonly(motions), scenario.step_noise_std, scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
         """(..., M, 2) positions ``period`` later, which need not be a whole sampling period."""
@@ -218,9 +220,58 @@ class CoordinatedTurn(ByValue, TargetMotion):
         return Belief.of(np.concatenate([moving.mean, rates], axis=1), covariance)
 
 
-TARGET_MOTIONS: dict[str, type[KnownVelocity] | type[ConstantVelocity] | type[CoordinatedTurn]] = {
+@dataclass(frozen=True, eq=False, repr=False)
+class ConstantVelocity3D(ByValue, TargetMotion):
+    """States x, y [m], velocity in x and y [m/s], height z [m], climb rate [m/s]; white acceleration on all axes.
+
+    ``process_std``, ``velocity_std`` : as for :class:`ConstantVelocity`.
+    """
+
+    process_std: FloatArray
+    sampling_period: float = 1.0
+    velocity_std: float = VELOCITY_STD
+    dimension: ClassVar[int] = 6
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> ConstantVelocity3D:
+        """The scenario's targets, their velocities now to be estimated."""
+        return cls(_process_std(scenario), scenario.sampling_period)
+
+    def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
+        """(..., M, 6) states one period later."""
+        return np.asarray(states @ _step_3d(period).T)
+
+    def transition(self, states: FloatArray, period: float) -> FloatArray:
+        """(..., M, 6, 6), the same for all."""
+        return np.broadcast_to(_step_3d(period), (*states.shape, 6))
+
+    def noise(self, period: float) -> FloatArray:
+        """(M, 6, 6) of white acceleration."""
+        noise = np.zeros((len(self.process_std), 6, 6))
+        noise[:, :4, :4] = planar = _white_acceleration(self.process_std, self.sampling_period, period)
+        noise[:, 4:, 4:] = planar[:, ::2, ::2]
+        return noise
+
+    def initial(self, scenario: Scenario) -> Belief:
+        """The scenario's estimates, with its speeds and headings, heights and climb rates."""
+        moving = _with_velocities(scenario, self.velocity_std)
+        upward = np.array([(target.z, target.climb) for target in scenario.targets])
+        covariance = np.array([target.state_covariance(6, self.velocity_std) for target in scenario.targets])
+        return Belief.of(np.concatenate([moving.mean, upward], axis=1), covariance)
+
+
+def _step_3d(period: float) -> FloatArray:
+    step = np.eye(6)
+    step[[0, 1, 4], [2, 3, 5]] = period
+    return step
+
+
+TARGET_MOTIONS: dict[
+    str, type[KnownVelocity] | type[ConstantVelocity] | type[ConstantVelocity3D] | type[CoordinatedTurn]
+] = {
     "known velocity": KnownVelocity,
     "constant velocity": ConstantVelocity,
+    "constant velocity 3d": ConstantVelocity3D,
     "coordinated turn": CoordinatedTurn,
 }
 
@@ -266,26 +317,23 @@ def _cells(time: float, period: float, cell: float) -> tuple[FloatArray, FloatAr
 
 
 def _process_std(scenario: Scenario) -> FloatArray:
-    return readonly(np.array([target.process_std for target in scenario.targets]))
+    """(M,) by how much white acceleration moves a target's position in a sampling period [m]."""
+    return readonly(np.sqrt(scenario.acceleration_density * scenario.sampling_period**3 / 3))
 
 
 def _white_acceleration(process_std: FloatArray, sampling_period: float, period: float) -> FloatArray:
     """(M, 4, 4); its density is such that one sampling period moves a position by ``process_std``."""
-    density = 3 * process_std**2 / sampling_period**3
-    shape = np.array([[period**3 / 3, period**2 / 2], [period**2 / 2, period]])
-    return np.asarray(density[:, None, None] * np.kron(shape, np.eye(2)))
+    return white_acceleration(3 * process_std**2 / sampling_period**3, period)
 
 
 def _positions(scenario: Scenario) -> Belief:
     means = np.array([(target.x, target.y) for target in scenario.targets])
-    return Belief.of(means, np.array([target.covariance for target in scenario.targets]))
+    return Belief.of(means, np.array([target.state_covariance(2) for target in scenario.targets]))
 
 
 def _with_velocities(scenario: Scenario, velocity_std: float) -> Belief:
     known = _positions(scenario)
     speed, heading = np.array([(target.speed, target.heading) for target in scenario.targets]).T
     velocity = speed[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
-    covariance = np.zeros((len(speed), 4, 4))
-    covariance[:, :2, :2] = known.covariance
-    covariance[:, [2, 3], [2, 3]] = velocity_std**2
+    covariance = np.array([target.state_covariance(4, velocity_std) for target in scenario.targets])
     return Belief.of(np.concatenate([known.mean, velocity], axis=1), covariance)

@@ -19,9 +19,11 @@ from pydantic_core import core_schema
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.record import Record
 from ratt_opt.scenario.sensor import Sensor
+from ratt_opt.scenario.sensors.doppler import DopplerRadar
 from ratt_opt.scenario.sensors.model import SensorModel
 from ratt_opt.scenario.sensors.position import PositionSensor
 from ratt_opt.scenario.sensors.range_bearing import BearingOnly, RangeBearing, RangeOnly
+from ratt_opt.scenario.sensors.spatial import SphericalSensor, TiltedCamera
 
 __all__ = ["GROUP", "KIND", "AnySensor", "kind_of", "made", "register_sensor", "sensor_kinds"]
 
@@ -29,7 +31,14 @@ GROUP = "ratt_opt.sensors"
 """The entry-point group."""
 KIND = "kind"
 """The field of a file that names a sensor's class; a sensor without it is a :class:`Sensor`."""
-LIBRARY: dict[str, type[SensorModel]] = {"range": RangeOnly, "bearing": BearingOnly, "position": PositionSensor}
+LIBRARY: dict[str, type[SensorModel]] = {
+    "range": RangeOnly,
+    "bearing": BearingOnly,
+    "position": PositionSensor,
+    "doppler": DopplerRadar,
+    "tilted camera": TiltedCamera,
+    "spherical": SphericalSensor,
+}
 _registered: dict[str, type] = {}
 
 SensorClass = TypeVar("SensorClass", bound=type)

@@ -29,7 +29,7 @@ def test_it_is_the_missions_loop(monkeypatch, linearisation: str) -> None:
     monkeypatch.setattr(mission_run, "simulated_readings", lambda *a: taken.append(simulate(*a)) or taken[-1])
     scenario, model = team(), MissionModel(linearisation=linearisation)
     mission = run_mission(scenario, steps=6, attacker="none", model=model)
-    tracker = Tracker(scenario, model=model)
+    tracker = Tracker(scenario, model=model, gate=None)
     measured: list[Measurement] = []
     for k, ((elements, _), step) in enumerate(zip(mission.decisions, mission.steps, strict=True)):
         plan = tracker.step(measured)

@@ -19,7 +19,7 @@ from ratt_opt import (
     Sensor,
     random_scenario,
 )
-from ratt_opt.missions.models.robots import move_on_arcs, robot_motion
+from ratt_opt.missions.models.robots import check_robot_motion, move_on_arcs
 from ratt_opt.missions.models.sensors import sensors_of
 from ratt_opt.missions.models.targets import target_motion
 
@@ -126,8 +126,8 @@ def test_arcs_are_many_small_steps() -> None:
 
 def test_names_that_do_not_exist() -> None:
     scenario = random_scenario(1, 1, alpha_s=0, alpha_c=0, seed=0)
-    with pytest.raises(InputError, match="robot_motion must be paper or arc"):
-        robot_motion("omni")
+    with pytest.raises(InputError, match="robot_motion must be paper, arc, holonomic or a RobotMotion"):
+        check_robot_motion("omni")
     with pytest.raises(InputError, match="motion must be known velocity"):
         target_motion("random walk", scenario)
     with pytest.raises(InputError, match="sensor must be a SensorModel"):
