@@ -16,7 +16,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from ratt_opt.setfunctions.base import SetFunction
-from ratt_opt.setfunctions.evaluation_error import evaluation_error
+from ratt_opt.setfunctions.evaluation_error import evaluation_error, largest_fall
 from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
@@ -177,23 +177,38 @@ class Problem:
     def evaluation_error(self) -> float:
         """No value of a plan's robots is computed further from the exact one, of the matrices given.
 
+        It includes the :attr:`largest_fall`, as searches rely on a non-decreasing objective.
         0 if nothing is known of that: set functions and criteria of your own count as exact.
         """
         if not isinstance(self.objective, InformationObjective):
             return 0.0
         return evaluation_error(self.objective, self.choices)
 
-    def outward(self, lower: float, upper: float) -> tuple[float, float]:
-        """Ends of a worst case's bracket as computed, moved apart by the :attr:`evaluation_error`.
+    @cached_property
+    def largest_fall(self) -> float:
+        """No robots of a plan are worth less than some of them by more, in exact arithmetic; 0 if nothing is known.
 
-        Relies on a non-decreasing objective: no team is worth less than none. If all robots that tell anything can
-        be blinded, a worst case of 0 is exact.
+        Information that is semidefinite only up to rounding takes a little away.
+        """
+        return largest_fall(self.objective, self.choices) if isinstance(self.objective, InformationObjective) else 0.0
+
+    @property
+    def least_value(self) -> float:
+        """No robots of a plan are worth less, in exact arithmetic: no information is worth 0."""
+        return -self.largest_fall
+
+    def outward(self, lower: float, upper: float) -> tuple[float, float]:
+        """Ends of a worst case's bracket as computed, moved apart by what rounding may have done.
+
+        That is the :attr:`evaluation_error`. No team is worth less than the :attr:`least_value`; if all robots that
+        tell anything can be blinded, the worst case is at most 0.
         """
         error = self.evaluation_error
-        if error == 0.0 or (upper == 0.0 and self._can_be_blinded):
+        if error == 0.0:
             return lower, upper
         lowest = np.nextafter(lower - error, -np.inf)
-        return float(max(lowest, min(lower, 0.0))), float(np.nextafter(upper + error, np.inf))
+        highest = 0.0 if upper == 0.0 and self._can_be_blinded else float(np.nextafter(upper + error, np.inf))
+        return float(max(lowest, min(lower, self.least_value))), highest
 
     @property
     def _can_be_blinded(self) -> bool:

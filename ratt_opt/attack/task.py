@@ -118,10 +118,13 @@ class AttackResult(Shown):
 
 
 def outward(problem: Problem, plan: IntArray, found: AttackResult) -> AttackResult:
-    """A plan's attack, the ends moved apart by what computing them may have rounded; 0 is exact if nobody tells."""
+    """A plan's attack, the ends moved apart by what computing them may have rounded.
+
+    What the attack leaves is exactly 0 if nobody tells anything: not if the difference of two criteria is.
+    """
     lower, upper = problem.outward(found.lower, found.upper)
-    if found.upper == 0.0 and not problem.tells_anything(plan, found.attack):
-        upper = 0.0
+    if found.upper == 0.0 and (error := problem.evaluation_error) > 0:
+        upper = float(np.nextafter(error, np.inf)) if problem.tells_anything(plan, found.attack) else 0.0
     return replace(found, lower=lower, upper=upper)
 
 

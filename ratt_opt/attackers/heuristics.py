@@ -89,7 +89,7 @@ def heuristic_result(problem: Problem, values: PlanValues, attack: Attack) -> At
     lower, evaluations = problem.objective(()), values.evaluations
     upper = problem.team_value(values.plan, attack)
     found = AttackResult(attack=attack, lower=lower, upper=upper, stop=Stop.HEURISTIC, evaluations=evaluations)
-    return outward(problem, values.plan, found)
+    return replace(outward(problem, values.plan, found), lower=lower)
 
 
 def _on_complete_graph(problem: Problem, order: list[int], blinded: frozenset[int]) -> Attack:

@@ -87,6 +87,11 @@ class ChangedProblem(Problem):
         """The same as of any problem, against the exact values of ``whole``."""
         return evaluation_error(self.information_objective, self.choices) + self.change_error
 
+    @property
+    def least_value(self) -> float:
+        """The same as of any problem, of the exact values of ``whole``."""
+        return -min(self.whole.largest_fall, self.largest_fall + self.change_error)
+
     def lifted(self, result: Proved) -> Proved:
         """A result of this problem with the proof as one of ``whole``: it touches at the same information."""
         if not self.is_changed:

@@ -32,7 +32,7 @@ from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.information import symmetric_inverse
+from ratt_opt.setfunctions.information import positive_parts, symmetric_inverse
 from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
@@ -165,6 +165,7 @@ def _in_coordinates(
     prior = measured.turned @ objective.prior @ measured.basis
     information = measured.inverse @ objective.information @ np.swapaxes(measured.inverse, -1, -2)
     prior, information = ((x + np.swapaxes(x, -1, -2)) / 2 for x in (prior, information))
+    information = positive_parts(information)
     part = {} if output is None else {"output": output}
     made: InformationObjective = kind(prior, information, objective.weights, **part)
     return made
@@ -180,6 +181,8 @@ def _error(
     one = sizes_of(inverse @ basis - np.eye(r)) + sizes_of(product_error(inverse, np.eye(basis.shape[-2]), basis))
     rounded = sizes_of(product_error(inverse, objective.information, np.swapaxes(inverse, -1, -2)))
     rounded += 3 * one * sizes_of(smaller.information)
+    mapped = inverse @ objective.information @ np.swapaxes(inverse, -1, -2)
+    rounded += sizes_of(smaller.information - mapped)  # the symmetric part was taken, and the nearest semidefinite one
     information = _most_of_plans(problem, rounded)
     size = sizes_of(smaller.prior) * largest_sizes(smaller.information, problem.choices)
     share = np.maximum(SLACK, ROUNDINGS * size)

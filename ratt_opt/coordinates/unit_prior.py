@@ -86,7 +86,7 @@ def _error(problem: Problem, objective: InformationObjective, changed: Informati
     values = np.linalg.eigvalsh(objective.information)
     negative = np.maximum(0.0, -values[..., 0])
     size = sizes_of(root) ** 2
-    rounded = size * (negative * d + (20 * d + 8 * d**2) * UNIT * sizes_of(objective.information))
+    rounded = size * (negative * d + (20 * d + 8 * d**2 + 16) * UNIT * sizes_of(objective.information))
     information = largest_sizes(rounded[..., None, None], problem.choices)
     output = np.full(len(size), 4 * d * UNIT * d)
     # The root's error counts in the given coordinates, where the prior is not the identity.

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.curvatures.marginals import Marginals, MeasuredMarginals
+from ratt_opt.curvatures.marginals import Marginals, MeasuredMarginals, check_monotone
 from ratt_opt.setfunctions.metered import Metered
 
 if TYPE_CHECKING:
@@ -26,7 +26,10 @@ CONTEXTS = 30
 
 
 def any_marginals(domain: Domain, budget: Budget, stop: Stop) -> MeasuredMarginals:
-    """Brackets of the marginals; relies on a non-decreasing function. ``stop`` : if the budget ends nothing."""
+    """Brackets of the marginals; relies on a non-decreasing function. ``stop`` : if the budget ends nothing.
+
+    InputError : a context shows that the function falls.
+    """
     known = _Seen(domain, budget)
     try:
         known.bound()
@@ -35,9 +38,9 @@ def any_marginals(domain: Domain, budget: Budget, stop: Stop) -> MeasuredMargina
         stop = out.stop
     except KeyboardInterrupt:
         stop = budget.interrupt()
-    return MeasuredMarginals(
-        marginals=known.marginals(), how=f"{known.rests_on} and drawn contexts", stop=stop, nodes=0
-    )
+    marginals = known.marginals()
+    check_monotone(domain, marginals)
+    return MeasuredMarginals(marginals=marginals, how=f"{known.rests_on} and drawn contexts", stop=stop, nodes=0)
 
 
 class _Seen:

@@ -23,6 +23,7 @@ from ratt_opt.curvatures.marginals import (
     check_monotone,
     enumerate_marginals,
 )
+from ratt_opt.curvatures.outward import complement_above, complement_below, quotient_above, quotient_below
 from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
 from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
@@ -58,6 +59,7 @@ class Curvature:
     ``largest_context`` the largest. ``useless`` : elements whose every marginal is 0, left out by definition
     (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within the
     rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
+    Both ends are moved outward by what the values that they are quotients of may have rounded.
     ``how`` : what the ends rest on. ``stop`` : why the search stopped; ``nodes`` : parts of the domain bounded.
     ``marginals`` : what is known of every element of the domain, in ascending order (its contexts name elements by
     their position in that order).
@@ -232,20 +234,20 @@ def _top_of_lattice(given: SetFunction, budget: Budget) -> Marginals:
 
 
 def _curvature_from(found: MeasuredMarginals, domain: Domain) -> Curvature:
-    marginals, rounding = found.marginals, domain.rounding
+    """The bracket, each quotient moved outward by what its marginals may have rounded."""
+    marginals, noise = found.marginals, domain.noise
     most, seen = marginals.largest_upper, marginals.largest_lower
     useful = most > 0
-    doubtful = useful & (most <= rounding)
+    doubtful = useful & (most <= noise)
     safe, shown = np.full(len(most), np.inf), np.full(len(most), np.inf)
-    safe[useful] = np.clip(marginals.smallest_lower[useful], 0.0, None) / most[useful]
-    safe[doubtful] = np.clip(marginals.smallest_lower[doubtful] - rounding, 0.0, None) / (most[doubtful] + rounding)
-    sure = useful & (seen > rounding)
-    shown[sure] = np.clip(marginals.smallest_upper[sure], 0.0, None) / seen[sure]
-    upper = 1.0 - float(safe.min(initial=1.0))
+    safe[useful] = quotient_below(marginals.smallest_lower[useful], most[useful], noise)
+    sure = useful & (seen > noise)
+    shown[sure] = quotient_above(marginals.smallest_upper[sure], seen[sure], noise)
+    upper = complement_above(float(safe.min(initial=1.0)))
     x = int(shown.argmin()) if sure.any() else None
     return Curvature(
-        lower=0.0 if x is None else min(max(1.0 - float(shown[x]), 0.0), max(upper, 0.0)),
-        upper=max(upper, 0.0),
+        lower=0.0 if x is None else min(complement_below(float(shown[x])), upper),
+        upper=upper,
         domain=domain.name,
         element=None if x is None else domain.element(x),
         smallest_context=() if x is None else domain.named(marginals.smallest_context[x]),

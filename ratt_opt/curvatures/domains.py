@@ -11,6 +11,7 @@ from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_subset, 
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SetFunction, TableFunction, finite_values
+from ratt_opt.setfunctions.evaluation_error import value_error
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import Metered
 
@@ -23,8 +24,6 @@ LARGEST_ENUMERATION = 2**24
 """Most sets of a domain that are enumerated (128 MiB of values)."""
 BLOCK = 2**14
 """Sets whose values are computed at once: their matrices stay in cache, larger blocks are no faster (measured)."""
-ROUNDING = 1e-13
-"""Error of a marginal relative to the values it is a difference of: several hundred units in the last place."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -32,14 +31,16 @@ class Domain:
     """``restricted`` is the function on the elements that take part; a set holds at most one of each owner's.
 
     ``owners`` : owner of each of its elements, 0.. without gaps. ``names`` : their indices in the original function.
-    ``rounding`` : error that a marginal may have; 0 if the values are given and not computed.
+    ``noise`` : by how much a computed difference of two values may be off; 0 if values are whole numbers
+    ``largest`` : size of the values of nothing and of everything, between which those of a non-decreasing function lie
     """
 
     name: str
     restricted: SetFunction
     owners: IntArray
     names: IntArray
-    rounding: float
+    noise: float
+    largest: float
 
     @property
     def count(self) -> float:
@@ -76,18 +77,25 @@ def domain_of(f: SetFunction, owners: ArrayLike | None, plan: ArrayLike | None) 
 
     InputError : owners of the wrong shape, or a plan that repeats or exceeds the elements.
     """
-    error, everything = _rounding(f), np.arange(f.n)
+    everything = np.arange(f.n)
     if plan is not None:
         chosen = check_subset("plan", integer_array(plan).tolist(), f.n)
-        alone = np.arange(len(chosen))
-        return Domain(name="robots", restricted=_restriction(f, chosen), owners=alone, names=chosen, rounding=error)
+        return _domain("robots", f, _restriction(f, chosen), np.arange(len(chosen)), chosen)
     if owners is None:
-        return Domain(name="elements", restricted=f, owners=everything, names=everything, rounding=error)
+        return _domain("elements", f, f, everything, everything)
     given = integer_array(owners)
     if given.shape != (f.n,) or given.dtype.kind not in "iu":
         raise InputError("owners", f"must hold {f.n} integers, one per element", f"shape {given.shape}, {given.dtype}")
     _, numbered = np.unique(given, return_inverse=True)
-    return Domain(name="feasible", restricted=f, owners=numbered.astype(np.int64), names=everything, rounding=error)
+    return _domain("feasible", f, f, numbered.astype(np.int64), everything)
+
+
+def _domain(name: str, f: SetFunction, restricted: SetFunction, owners: IntArray, names: IntArray) -> Domain:
+    """The domain with what its values may have rounded."""
+    largest = float(np.abs(finite_values(np.array([restricted([]), restricted(range(restricted.n))]))).max())
+    groups = [names[owners == i] for i in range(int(owners.max(initial=-1)) + 1)]
+    noise = 2 * value_error(f, groups, largest)
+    return Domain(name=name, restricted=restricted, owners=owners, names=names, noise=noise, largest=largest)
 
 
 def values_over(f: SetFunction, groups: list[IntArray], budget: Budget) -> FloatArray:
@@ -145,15 +153,6 @@ def _restriction(f: SetFunction, chosen: IntArray) -> SetFunction:
         values = values_over(f, list(chosen[:, None]), Budget())
         return TableFunction(values.ravel(order="F"))  # the first element is the lowest bit
     return Restricted(f, chosen)
-
-
-def _rounding(f: SetFunction) -> float:
-    if isinstance(f, TableFunction):
-        return 0.0
-    size = abs(float(finite_values(np.array([f(range(f.n))]))[0]))
-    if isinstance(f, InformationObjective):
-        size += f.prior_magnitude
-    return ROUNDING * size
 
 
 class Restricted(SetFunction):

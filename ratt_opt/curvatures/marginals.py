@@ -16,7 +16,7 @@ from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.lattice import marginal_ends
-from ratt_opt.setfunctions.properties import mask_without
+from ratt_opt.setfunctions.properties import TOLERANCE, mask_without
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,8 +40,6 @@ __all__ = [
 Context = tuple[int, ...]
 TOUCHING = 1e-9
 """Ratios that differ by less, relatively, meet: the safety margins for rounding keep them apart."""
-FALL = 1e-9
-"""A marginal below minus this, relative to the largest one, is no rounding: the function falls."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,9 +95,9 @@ def check_monotone(domain: Domain, found: Marginals) -> None:
     """Refuse a function with a negative marginal (beyond rounding), showing it."""
     if len(found.smallest_lower) == 0:
         return
-    scale = max(float(np.abs(found.largest_upper).max(initial=0.0)), 1e-300)
     worst = int(found.smallest_lower.argmin())
-    if found.smallest_lower[worst] < -FALL * scale:
+    # The rule of find_monotonicity_violation: marginals are differences of values, and as exact as those.
+    if found.smallest_lower[worst] < -max(TOLERANCE * domain.largest, domain.noise):
         context = domain.named(found.smallest_context[worst])
         shown = f"adding {domain.element(worst)} to {list(context)} changes it by {found.smallest_lower[worst]:.6g}"
         raise InputError("f", "must be non-decreasing", shown)

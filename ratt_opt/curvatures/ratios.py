@@ -8,11 +8,15 @@ With ``rho(W | S) = f(S + W) - f(S)``, and all sets within the domain:
 A pair whose right side is 0 restricts neither (the function is non-decreasing), so it is left out, by definition.
 ``gamma = 1`` exactly for submodular functions, ``alpha = 0`` exactly for supermodular ones; a function that never
 gains has ``gamma = 1`` and ``alpha = 0``.
+
+Gains are differences of computed values. Each quotient is moved outward by what that may have rounded; a gain within
+rounding may be nothing at all, so it decides no attained end, and leaves the other one open. What theory says, or the
+function of itself, is not contradicted by rounding: ``gamma`` is 1 of a submodular function.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,9 +26,12 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.curvatures.curvature import ENUMERATION_SHARE, GAP, SECONDS, curvature_over
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
+from ratt_opt.curvatures.outward import complement_above, complement_below, quotient_above, quotient_below
+from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.lattice import smallest_gain_ratio
+from ratt_opt.setfunctions.rounding_errors import UNIT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,6 +48,8 @@ LARGEST_PAIRS = 1.5e8
 """Most pairs of nested sets that are all looked at (a few seconds)."""
 SAMPLES = 200
 """Random sets whose subsets are all looked at, if the domain is too large."""
+RATIO_ROUNDING = 128 * UNIT
+"""Relative error of a quotient of a sum of up to 24 differences, and a difference, of exact numbers."""
 SAMPLED_SIZE = 8
 """Elements of each: 3**8 nested pairs take 0.1 ms compiled, so that all samples take a fraction of a second."""
 
@@ -105,18 +114,17 @@ def submodularity_ratio(
         part = inner.part(ENUMERATION_SHARE)
         values, groups = _monotone_values(domain, part), domain.groups
         if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= LARGEST_PAIRS:
-            found = _smallest_ratio(values, groups, part)
+            found = _smallest_ratio(values, groups, domain.noise, part)
             part.check()
-            return _ratio(min(found[0], 1.0), found, domain, "every nested pair of sets", Stop.EXHAUSTED)
-        later = _later_marginals(values, groups, inner)
+            return _ratio(found.lower, found, domain, "every nested pair of sets", Stop.EXHAUSTED)
+        later = _later_marginals(values, groups, domain.noise, inner)
     except OutOfBudget:
         return _ratio_from_curvature(domain, seed, inner)
     except KeyboardInterrupt:
         inner.interrupt()
         return _ratio_from_curvature(domain, seed, inner)
     found = _sampled_ratio(domain, seed, inner)
-    lower = min(later, 1.0, found[0])
-    return _ratio(lower, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
+    return _ratio(later, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
 @interruptible
@@ -147,41 +155,63 @@ def generalised_curvature(
     if domain.count <= LARGEST_ENUMERATION:
         try:
             part = inner.part(ENUMERATION_SHARE)
-            exact = _smallest_kept(_monotone_values(domain, part), domain.groups, part)
+            exact = _smallest_kept(_monotone_values(domain, part), domain.groups, domain.noise, part)
         except OutOfBudget:
             pass  # a bracket in the time left
         except KeyboardInterrupt:
             inner.interrupt()
     if exact is not None:
-        kept, element, small, large = exact
-        upper, how, stop = 1.0 - kept, "every nested pair of sets", Stop.EXHAUSTED
+        kept, upper = exact, complement_above(exact.least)
+        how, stop = "every nested pair of sets", Stop.EXHAUSTED
     else:
         # The same total curvature compares a marginal with any other of its element, not only with earlier ones.
         found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner)
-        kept, element, small, large = _searched_kept(domain, found, seed, inner)
-        upper, how, stop = found.upper, f"at most the curvature ({found.how}); a searched pair", found.stop
-    lower, upper, small, large = max(min(1.0 - kept, upper), 0.0), max(upper, 0.0), *map(domain.named, (small, large))
-    x, name = None if element is None else domain.element(element), domain.name
+        kept, upper = _searched_kept(domain, found, seed, inner), found.upper
+        how, stop = f"at most the curvature ({found.how}); a searched pair", found.stop
+    small, large = map(domain.named, (kept.small, kept.large))
+    x, lower = None if kept.element is None else domain.element(kept.element), complement_below(kept.most)
     return GeneralisedCurvature(
-        lower=lower, upper=upper, domain=name, element=x, small=small, large=large, how=how, stop=stop
+        lower=min(lower, upper),
+        upper=upper,
+        domain=domain.name,
+        element=x,
+        small=small,
+        large=large,
+        how=how,
+        stop=stop,
     )
 
 
 def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget) -> SubmodularityRatio:
     """``rho(w | S)`` is at least ``1 - c`` times the largest marginal of ``w``; those add up to ``rho(W | S)``."""
     if domain.is_submodular:
-        return _ratio(1.0, (1.0, (), ()), domain, "submodular by theory", Stop.EXHAUSTED)
+        return _ratio(1.0, _Pair(), domain, "submodular by theory", Stop.EXHAUSTED)
     curved = curvature_over(domain, total=True, gap=GAP, budget=budget)
     found = _sampled_ratio(domain, seed, budget)
-    lower = min(max(1.0 - curved.upper, 0.0), found[0])
+    lower = complement_below(curved.upper)
     return _ratio(lower, found, domain, "1 - total curvature; a searched pair", curved.stop)
 
 
-def _ratio(
-    lower: float, found: tuple[float, Context, Context], domain: Domain, how: str, stop: Stop
-) -> SubmodularityRatio:
-    upper, name, (base, added) = min(found[0], 1.0), domain.name, map(domain.named, found[1:])
-    return SubmodularityRatio(lower=lower, upper=upper, domain=name, base=base, added=added, how=how, stop=stop)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Pair:
+    """``upper`` is attained by ``added`` on top of ``base``; no pair looked at has a ratio below ``lower``."""
+
+    lower: float = 1.0
+    upper: float = 1.0
+    base: Context = ()
+    added: Context = ()
+
+
+def _ratio(lower: float, found: _Pair, domain: Domain, how: str, stop: Stop) -> SubmodularityRatio:
+    upper, (base, added) = found.upper, map(domain.named, (found.base, found.added))
+    if domain.is_submodular:
+        if upper < 1:
+            shown = f"{list(added)} add more to {list(base)} together than each alone: ratio {upper:.6g}"
+            raise InputError("f", "must be submodular, as it states", shown)
+        lower = 1.0
+    return SubmodularityRatio(
+        lower=min(lower, upper), upper=upper, domain=domain.name, base=base, added=added, how=how, stop=stop
+    )
 
 
 def _monotone_values(domain: Domain, budget: Budget) -> FloatArray:
@@ -190,37 +220,53 @@ def _monotone_values(domain: Domain, budget: Budget) -> FloatArray:
     return values
 
 
-def _smallest_ratio(values: FloatArray, groups: list[IntArray], budget: Budget) -> tuple[float, Context, Context]:
-    """``gamma`` (1 if nothing restricts it) and the sets that attain it."""
-    ratio, top, part = smallest_gain_ratio(np.ravel(values), np.array(values.shape, dtype=np.int64), budget)
-    if not np.isfinite(ratio):
-        return 1.0, (), ()
-    whole = elements_at(np.unravel_index(int(top), values.shape), groups)
-    base = tuple(e for bit, e in enumerate(reversed(whole)) if int(part) >> bit & 1)
-    return float(ratio), base, tuple(e for e in whole if e not in base)
+def _smallest_ratio(values: FloatArray, groups: list[IntArray], noise: float, budget: Budget) -> _Pair:
+    """Ends of ``gamma`` (1 if nothing restricts it) and the sets that attain the upper one."""
+    sizes = np.array(values.shape, dtype=np.int64)
+    found = smallest_gain_ratio(np.ravel(values), sizes, budget, noise)
+    lower = found.lower if found.lower >= 1 else max(found.lower, 0.0) * (1 - RATIO_ROUNDING)
+    upper = found.upper * (1 + RATIO_ROUNDING)
+    if upper >= 1:
+        return _Pair(lower=min(lower, 1.0))
+    whole = elements_at(np.unravel_index(found.top, values.shape), groups)
+    base = tuple(e for bit, e in enumerate(reversed(whole)) if found.part >> bit & 1)
+    return _Pair(lower=lower, upper=upper, base=base, added=tuple(e for e in whole if e not in base))
 
 
-def _smallest_kept(
-    values: FloatArray, groups: list[IntArray], budget: Budget
-) -> tuple[float, int | None, Context, Context]:
-    """Smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 if no gain is positive); ``i``, ``A`` and ``B``."""
-    best: tuple[float, int | None, Context, Context] = (1.0, None, (), ())
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Kept:
+    """Share of an ``element``'s gain on ``small`` that it keeps on ``large``: at most ``most``; none keeps less than
+    ``least``.
+    """
+
+    least: float = 1.0
+    most: float = 1.0
+    element: int | None = None
+    small: Context = ()
+    large: Context = ()
+
+
+def _smallest_kept(values: FloatArray, groups: list[IntArray], noise: float, budget: Budget) -> _Kept:
+    """Ends of the smallest ``rho(i | B) / rho(i | A)``, ``A`` in ``B`` (1 if no gain is positive), with both sets."""
+    best, least = _Kept(), 1.0
     for i, gain, rest in each_marginal(values, groups):
         budget.check()
         earlier = over_subsets(np.maximum, gain)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            kept = np.where(earlier > 0, gain / earlier, np.inf)
+        useful, sure = earlier > 0, earlier > noise
+        least = min(least, float(quotient_below(gain[useful], earlier[useful], noise).min(initial=1.0)))
+        kept = np.full(gain.shape, np.inf)
+        kept[sure] = quotient_above(gain[sure], earlier[sure], noise)
         where = int(kept.argmin())
-        if kept.flat[where] < best[0]:
+        if kept.flat[where] < best.most:
             index = np.unravel_index(where, kept.shape)
-            small = _attaining_subset(gain, index, float(earlier[index]))
-            best = (float(kept[index]), i, elements_at(small, rest), elements_at(index, rest))
-    return best
+            small = elements_at(_attaining_subset(gain, index, float(earlier[index])), rest)
+            best = _Kept(most=float(kept[index]), element=i, small=small, large=elements_at(index, rest))
+    return replace(best, least=min(least, best.most))
 
 
-def _later_marginals(values: FloatArray, groups: list[IntArray], budget: Budget) -> float:
+def _later_marginals(values: FloatArray, groups: list[IntArray], noise: float, budget: Budget) -> float:
     """Smallest ``rho(w | S)`` over the largest ``rho(w | T)``, ``T`` containing ``S``, if that is positive."""
-    best = np.inf
+    best = 1.0
     for _, gain, _ in each_marginal(values, groups):
         budget.check()
         later = gain.copy()
@@ -228,7 +274,7 @@ def _later_marginals(values: FloatArray, groups: list[IntArray], budget: Budget)
             view = np.moveaxis(later, axis, 0)
             np.maximum(view[0], view.max(axis=0), out=view[0])
         useful = later > 0
-        best = min(best, float((gain[useful] / later[useful]).min(initial=np.inf)))
+        best = min(best, float(quotient_below(gain[useful], later[useful], noise).min(initial=1.0)))
     return best
 
 
@@ -257,19 +303,20 @@ def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatA
         yield values, chosen
 
 
-def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> tuple[float, Context, Context]:
-    tried = (_smallest_ratio(values, groups, Budget()) for values, groups in _samples(domain, seed, budget))
-    return min(tried, default=(1.0, (), ()))
+def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> _Pair:
+    samples = _samples(domain, seed, budget)
+    tried = (_smallest_ratio(values, groups, domain.noise, Budget()) for values, groups in samples)
+    return min(tried, key=lambda pair: pair.upper, default=_Pair())
 
 
-def _searched_kept(
-    domain: Domain, found: Curvature, seed: int, budget: Budget
-) -> tuple[float, int | None, Context, Context]:
+def _searched_kept(domain: Domain, found: Curvature, seed: int, budget: Budget) -> _Kept:
     """The best of the sampled pairs and, if nested, of the contexts that attain the curvature (restricted names)."""
-    tried: list[tuple[float, int | None, Context, Context]] = [(1.0, None, (), ())]
-    tried += [_smallest_kept(values, groups, Budget()) for values, groups in _samples(domain, seed, budget)]
+    tried = [_Kept()]
+    samples = _samples(domain, seed, budget)
+    tried += [_smallest_kept(values, groups, domain.noise, Budget()) for values, groups in samples]
     if found.element is not None and set(found.largest_context) <= set(found.smallest_context):
         back = {domain.element(x): x for x in range(domain.restricted.n)}
         small, large = (tuple(back[e] for e in c) for c in (found.largest_context, found.smallest_context))
-        tried.append((1.0 - found.lower, back[found.element], small, large))
-    return min(tried, key=lambda pair: pair[0])
+        most = float(np.nextafter(1.0 - found.lower, 2.0))
+        tried.append(_Kept(most=most, element=back[found.element], small=small, large=large))
+    return min(tried, key=lambda pair: pair.most)

@@ -345,16 +345,20 @@ def _n_max_upper(problem: Problem, lower: int, budget: Budget) -> int | None:
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:
-    """What a user should know of the input: elements, and robots, that tell nothing about any target."""
+    """What a user should know of the input: elements, and robots, that tell nothing, and matrices that were mended."""
     f = problem.objective
     if not isinstance(f, InformationObjective):
         return ()
+    found = []
     silent = np.all(f.information == 0, axis=(1, 2, 3))
-    if not silent.any():
-        return ()
-    robots = [i for i, own in enumerate(problem.choices) if silent[own].all()]
-    none = f"; none of robot {', '.join(map(str, robots))} tells anything: check its sensor" if robots else ""
-    return (f"{silent.sum()} of {counted(f.n, 'element')} tell nothing about any target{none}",)
+    if silent.any():
+        robots = [i for i, own in enumerate(problem.choices) if silent[own].all()]
+        none = f"; none of robot {', '.join(map(str, robots))} tells anything: check its sensor" if robots else ""
+        found.append(f"{silent.sum()} of {counted(f.n, 'element')} tell nothing about any target{none}")
+    if f.repaired:
+        mended = f"negative eigenvalues of {f.repaired} of the {f.n * f.n_targets} information matrices were set to 0"
+        found.append(f"{mended}: all values are those of the matrices without them")
+    return tuple(found)
 
 
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:

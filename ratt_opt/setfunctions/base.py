@@ -25,6 +25,7 @@ __all__ = [
     "SetFunction",
     "SizedFunction",
     "TableFunction",
+    "are_exact",
     "check_table_size",
     "checked_values",
     "finite_values",
@@ -32,6 +33,32 @@ __all__ = [
 
 LARGEST_TABLE = 26
 """Largest ground set that :meth:`SetFunction.table` accepts (512 MiB of float64)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WholeNumberParams:
+    """Whole numbers whose sums are exact in float64: ``terms * largest`` is at most 2**53.
+
+    ``largest`` : size of a number [1]; ``terms`` : numbers in a sum [1]. More of one leaves less of the other.
+    ``block`` : numbers looked at together [1]: more are less overhead, and leave the cache
+    """
+
+    largest: float = 2.0**45
+    terms: int = 256
+    block: int = 2**16
+
+
+WHOLE = WholeNumberParams()
+
+
+def are_exact(numbers: FloatArray, terms: int) -> bool:
+    """Whether all are whole, and sums of that many ``terms`` are exact."""
+    flat = numbers.ravel()
+    for start in range(0, len(flat), WHOLE.block):
+        some = flat[start : start + WHOLE.block]
+        if np.abs(some).max() > WHOLE.largest or (some != np.rint(some)).any():
+            return False
+    return terms <= WHOLE.terms
 
 
 def check_table_size(n: int) -> None:
@@ -116,6 +143,11 @@ class SetFunction(ABC):
         """
         share = IMPROVEMENT.relative * abs(value) if isfinite(value) else 0.0  # anything is better than nothing known
         return max(share, terms * self.rounding)
+
+    @property
+    def has_exact_values(self) -> bool:
+        """Whether values are whole numbers that floats hold, so that their differences are exact."""
+        return False
 
     @property
     def most_total_curvature(self) -> float:
@@ -222,6 +254,11 @@ class TableFunction(SizedFunction):
             raise InputError("values", "must have a power of two as length", length)
         self._n = length.bit_length() - 1
         check_table_size(self._n)
+
+    @property
+    def has_exact_values(self) -> bool:
+        """Whether all values are whole numbers below 2**53."""
+        return are_exact(self.values, self.n)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""

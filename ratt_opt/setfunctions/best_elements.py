@@ -13,7 +13,7 @@ import numpy as np
 
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_nonnegative, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import finite_values
+from ratt_opt.setfunctions.base import are_exact, finite_values
 from ratt_opt.setfunctions.decomposition import Overestimator, rounded_up
 from ratt_opt.setfunctions.sums import SumFunction
 
@@ -52,6 +52,11 @@ class BestElements(SumFunction):
     def marginal_bounds(self, part: int) -> FloatArray:
         """(k,) the utilities."""
         return self._of_part(part)
+
+    @property
+    def has_exact_values(self) -> bool:
+        """Whether all that is added up is whole."""
+        return are_exact(self.utility * self.weights, self.utility.shape[1]) and are_exact(self.utility, 1)
 
     def overestimator(self, part: int, share: FloatArray) -> Overestimator:
         """The concave envelope at a fractional point (k,)."""

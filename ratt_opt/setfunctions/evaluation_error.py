@@ -14,35 +14,56 @@ Notation, for one target: ``P`` is the prior, ``X`` the information of a set of 
    exchanges, whose factors have entries of at most ``2^(k - 1)`` times the matrix's in step ``k``, and three
    triangular solutions (Higham, Accuracy and Stability of Numerical Algorithms, 2002, theorems 8.5, 9.3 and 14.1).
 
+4. Information that is semidefinite up to rounding may take a little away: no sum of a plan's elements has an eigenvalue
+   below ``-n``. Beside ``n I`` more, added information takes nothing away, and values differ by at most
+   ``r / (1 - r) |C|^2 |P|`` with ``r = n |P|``. So if a set contains another, its value is less by no more.
+
 If elements tell about some directions only, ``r`` grows with ``|P| |L|``. If the prior's own condition makes that
 large, coordinates in which the prior is the identity have a smaller one: see ``ratt_opt/coordinates/unit_prior.py``.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.setfunctions.base import TableFunction
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.rounding_errors import MORE, UNIT, largest_sizes, most_of_plans
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.setfunctions.information import InformationObjective
+    from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["evaluation_error"]
+__all__ = ["evaluation_error", "largest_fall", "value_error"]
 
 FEW_COORDINATES = {1: 1.0, 2: 1.0}
 """``growth`` of the closed formulas: ``det L = ac - b^2`` is off by at most ``2 u ac + u det L``, and ``ac / det L`` is
 at most ``(k + 3) / 4`` for a matrix of condition ``k``."""
-SIGN = 1e-9
-"""Eigenvalues of an element's information are at least minus this times the largest."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComputedParams:
+    """Error of values whose formula is a user's own.
+
+    ``share`` : of the largest number that they may be a difference of [1], hundreds of its last digits: more
+    hides small violations, less takes rounding for one
+    """
+
+    share: float = 1e-13
+
+
+COMPUTED = ComputedParams()
 
 
 def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray]) -> float:
     """No value of a set of elements, at most one of each robot, is computed further from the exact one.
+
+    Searches rely on sets being worth no less than parts of them: by how much that may be wrong is added.
 
     0 for a criterion of one's own: nothing is known of its formula, so its values count as exact.
     """
@@ -53,17 +74,45 @@ def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray
         return 0.0
     inverse = np.linalg.norm(objective.prior_information, axis=(-2, -1)) * MORE
     sizes = largest_sizes(objective.information, choices)
-    lowest = SIGN * sizes * prior
-    if lowest.max() > SIGN * 1e6:  # information may be negative by rounding: then more is left than the prior
-        lowest = np.maximum(0.0, -np.linalg.eigvalsh(objective.information)[..., 0])
-        lowest = most_of_plans(lowest, choices) * prior + UNIT * dimension * sizes * prior
-    largest = prior / np.maximum(1 - lowest, 0.0)
+    lowest = most_of_plans(objective.negative_parts, choices) * prior * MORE
+    with np.errstate(divide="ignore"):
+        largest = prior / np.maximum(1 - lowest, 0.0)
     formula = UNIT * _growth(objective)
     before = _share(prior * (objective.inverse_error + formula * inverse))
     after = _after(objective, largest, lowest / prior, inverse, len(choices))
     logarithms = np.abs(np.log(np.stack([prior, inverse, inverse + sizes]))).max(axis=0)
     own = 2 * UNIT * (4 * dimension + targets + 8) * (1 + logarithms)
-    return float(objective.combine(scale * (before + own) + after) * MORE)
+    return float(objective.combine(scale * (before + own) + after) * MORE) + largest_fall(objective, choices)
+
+
+def value_error(f: SetFunction, choices: Sequence[IntArray], largest: float) -> float:
+    """By how much values of sets of elements, at most one of each choice, may be off; ``largest`` : of their sizes.
+
+    Proved for the library's criteria. Whole numbers are exact, tables are rounded once, and of other functions it is
+    their word (:attr:`SetFunction.rounding`), but at least ``COMPUTED.share``.
+    """
+    if f.has_exact_values:
+        return 0.0
+    if isinstance(f, TableFunction):
+        return UNIT * largest
+    if not isinstance(f, InformationObjective):
+        return max(f.rounding, COMPUTED.share * largest)
+    if f.error_scale(np.ones(f.n_targets)) is None:
+        return COMPUTED.share * (largest + f.prior_magnitude)
+    return evaluation_error(f, choices) if choices else 0.0
+
+
+def largest_fall(objective: InformationObjective, choices: Sequence[IntArray]) -> float:
+    """No set of elements, at most one of each robot, is worth less than a part of it by more, in exact arithmetic.
+
+    0 if all information is semidefinite, and for a criterion of one's own: it counts as non-decreasing.
+    """
+    negative = most_of_plans(objective.negative_parts, choices)
+    if not negative.any():
+        return 0.0
+    prior = np.linalg.norm(objective.prior, axis=(-2, -1)) * MORE
+    scale = objective.error_scale(prior)
+    return 0.0 if scale is None else float(objective.combine(scale * _share(negative * prior)) * MORE)
 
 
 def _after(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import warnings
 from copy import copy
+from dataclasses import dataclass
 from math import isqrt
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -17,7 +18,7 @@ import numpy as np
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
-from ratt_opt.setfunctions.rounding_errors import inverse_error
+from ratt_opt.setfunctions.rounding_errors import inverse_error, is_definite, negative_parts, shrunk_to_semidefinite
 from ratt_opt.setfunctions.target_parts import TargetParts
 
 if TYPE_CHECKING:
@@ -27,12 +28,12 @@ if TYPE_CHECKING:
 
     from ratt_opt.setfunctions.decomposition import Decomposition
 
-__all__ = ["InformationObjective", "from_triangles", "packed", "symmetric_inverse", "triangles"]
+__all__ = ["InformationObjective", "from_triangles", "packed", "positive_parts", "symmetric_inverse", "triangles"]
 
 SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
 SINGLE_TOLERANCE = 1e-6
-"""The same for float32 matrices: eight of their roundings. What is beyond ``SYMMETRY_TOLERANCE`` is repaired."""
+"""The same for float32 matrices: eight of their roundings."""
 LARGEST = 1e100
 """Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
 WIDEST = 2e14
@@ -40,6 +41,25 @@ WIDEST = 2e14
 searches that exchange elements lose a few: beyond this nothing would be left of the prior."""
 DEEPEST = 0.01
 """Largest size of a negative eigenvalue of the information times the prior's: some robots' must not outweigh it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SignParams:
+    """When a small eigenvalue counts as negative, or as positive.
+
+    Negative ones within ``rounded`` or ``slight`` stay as they are, and every published end accounts for them; those
+    beyond both are set to 0. Larger limits change fewer of the given matrices, and leave ends further apart.
+
+    ``rounded`` : share of the largest eigenvalue [1]; ``slight`` : share of the prior's inverse [1]
+    ``clear`` : share of the largest from which a prior's eigenvalue is positive [1]; below, exact arithmetic decides
+    """
+
+    rounded: float = 1e-13
+    slight: float = 1e-9
+    clear: float = 1e-12
+
+
+SIGN = SignParams()
 
 
 class InformationObjective(CriterionParts):
@@ -52,14 +72,21 @@ class InformationObjective(CriterionParts):
     Parameters
     ----------
     prior : (M, d, d) predicted covariances, symmetric (float32: up to its rounding) positive definite
-    information : (E, M, d, d) information of element ``e`` about target ``j``, symmetric
-        positive semidefinite; smallest eigenvalue at least ``-1e-9`` times the largest. float32: ``-1e-6``
-        times, and eigenvalues below the first limit are set to 0, with a ``UserWarning`` that says so
+    information : (E, M, d, d) information of element ``e`` about target ``j``, symmetric positive semidefinite up to
+        rounding: smallest eigenvalue at least ``-1e-9`` times the largest, and -0.01 times the prior's inverse
+        (float32: ``-1e-6`` times the largest). Those that are beyond ``-1e-13`` times the largest and ``-1e-9`` times
+        the prior's inverse would take information away, and are set to 0, with a ``UserWarning``
     weights : (M,) positive importance of each target; ones by default
 
     Raises
     ------
     InputError : a shape, symmetry, definiteness or sign rule is broken.
+
+    Notes
+    -----
+    All values, brackets and certificates are those of the matrices in the attributes ``prior`` and ``information``:
+    symmetric parts of the given ones, ``repaired`` of them (a number) without their negative eigenvalues. If rounding
+    made a matrix of two coordinates indefinite, its entry off the diagonal is smaller by some last digits.
 
     Source: ratt.tex, Section II-A e) and the objective of Section VI.
     """
@@ -67,11 +94,13 @@ class InformationObjective(CriterionParts):
     __slots__ = (
         "_baseline",
         "_inverse_error",
+        "_negative_parts",
         "_singletons",
         "condition",
         "information",
         "prior",
         "prior_information",
+        "repaired",
         "weights",
     )
 
@@ -80,7 +109,8 @@ class InformationObjective(CriterionParts):
 
     def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
         self.prior: FloatArray = readonly(_check_prior(prior))
-        self.information: FloatArray = readonly(_check_information(information, self.prior))
+        checked, self.repaired = _check_information(information, self.prior)
+        self.information: FloatArray = readonly(checked)
         self.weights: FloatArray = readonly(_check_weights(weights, self.n_targets))
         self.prior_information: FloatArray = readonly(symmetric_inverse(self.prior))
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
@@ -90,6 +120,7 @@ class InformationObjective(CriterionParts):
         self.condition: FloatArray = readonly(self._condition())
         self._singletons: FloatArray | None = None
         self._inverse_error: FloatArray | None = None
+        self._negative_parts: FloatArray | None = None
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.n} elements, {self.n_targets} targets, d = {self.dimension})"
@@ -121,19 +152,27 @@ class InformationObjective(CriterionParts):
             self._inverse_error = readonly(inverse_error(self.prior, self.prior_information))
         return self._inverse_error
 
+    @property
+    def negative_parts(self) -> FloatArray:
+        """(E, M) no eigenvalue of :attr:`information` is further below 0; 0 if it is shown to be semidefinite."""
+        if self._negative_parts is None:
+            self._negative_parts = readonly(negative_parts(self.information))
+        return self._negative_parts
+
     def restricted_to(self, elements: IntArray) -> Self:
         """The same criterion over some of the elements, in the given order."""
         restricted = copy(self)
         restricted.information = readonly(self.information[elements])
-        restricted._singletons = None
+        restricted._singletons = restricted._negative_parts = None
         return restricted
 
     def with_information(self, information: ArrayLike) -> Self:
         """The same criterion of other elements: (E, M, d, d), checked."""
         other = copy(self)
-        other.information = readonly(_check_information(information, self.prior))
+        checked, other.repaired = _check_information(information, self.prior)
+        other.information = readonly(checked)
         other.condition = readonly(other._condition())
-        other._singletons = None
+        other._singletons = other._negative_parts = None
         return other
 
     def decomposition(self) -> Decomposition | None:
@@ -258,6 +297,9 @@ def _check_prior(value: ArrayLike) -> FloatArray:
                 shown = f"eigenvalues from {eigenvalues[0]:.6g} to {eigenvalues[-1]:.6g}"
                 raise InputError(f"prior[{j}]", rule, shown)
             raise InputError(f"prior[{j}]", "must be positive definite", f"smallest eigenvalue {eigenvalues[0]:.6g}")
+        if eigenvalues[0] < SIGN.clear * eigenvalues[-1] and not is_definite(prior[j]):
+            shown = f"a negative eigenvalue; the smallest is computed as {eigenvalues[0]:.6g}"
+            raise InputError(f"prior[{j}]", "must be positive definite", shown)
         if eigenvalues[0] < 1 / LARGEST:
             rule = f"must have eigenvalues of at least {1 / LARGEST:g}"
             raise InputError(f"prior[{j}]", rule, f"smallest eigenvalue {eigenvalues[0]:.6g}")
@@ -273,8 +315,10 @@ def _unit_diagonal(matrix: FloatArray) -> FloatArray:
     return np.asarray(matrix * scale[:, None] * scale)
 
 
-def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
-    """Return (E, M, d, d) matrices, symmetric positive semidefinite up to rounding, that leave the prior its digits."""
+def _check_information(value: ArrayLike, prior: FloatArray) -> tuple[FloatArray, int]:
+    """Return (E, M, d, d) matrices, semidefinite up to rounding, that leave the prior its digits, and how many were
+    repaired.
+    """
     targets, dimension = prior.shape[:2]
     information = check_finite("information", value, ndim=4)
     if information.shape[0] < 1:
@@ -282,32 +326,50 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> FloatArray:
     if information.shape[1:] != (targets, dimension, dimension):
         rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
         raise InputError("information", rule, f"shape {information.shape}")
-    information = _check_symmetric("information", information, single=_is_single(value))
+    single = _is_single(value)
+    information = _check_symmetric("information", information, single=single)
     eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
-    if _is_single(value):
-        information = _repaired(information, eigenvalues)
-        eigenvalues = np.asarray(np.linalg.eigvalsh(information))
-    bad = np.argwhere(eigenvalues[..., 0] < -SYMMETRY_TOLERANCE * np.abs(eigenvalues[..., -1]))
+    tolerance = SINGLE_TOLERANCE if single else SYMMETRY_TOLERANCE
+    bad = np.argwhere(eigenvalues[..., 0] < -tolerance * np.abs(eigenvalues[..., -1]))
     if len(bad):
         e, j = bad[0].tolist()
         shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
         raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
-    _check_spread(eigenvalues, np.asarray(np.linalg.eigvalsh(prior)[:, -1]))
-    return information
+    largest = np.asarray(np.linalg.eigvalsh(prior)[:, -1])
+    wrong = is_negative(eigenvalues, SYMMETRY_TOLERANCE) if single else np.zeros(eigenvalues.shape[:2], dtype=np.bool_)
+    _check_spread(np.where(wrong[..., None], np.maximum(eigenvalues, 0.0), eigenvalues), largest)
+    wrong |= is_negative(eigenvalues) & (-eigenvalues[..., 0] * largest > SIGN.slight)
+    if wrong.any():
+        _warn_of_repair(eigenvalues[wrong], single=single)
+        information = positive_parts(information, wrong)
+    return shrunk_to_semidefinite(information), int(wrong.sum())
 
 
-def _repaired(information: FloatArray, eigenvalues: FloatArray) -> FloatArray:
-    """The matrices, negative eigenvalues set to 0 if rounding to float32 explains them; a warning says how many."""
-    least, most = eigenvalues[..., 0], np.abs(eigenvalues[..., -1])
-    rounded = (least < -SYMMETRY_TOLERANCE * most) & (least >= -SINGLE_TOLERANCE * most)
-    if not rounded.any():
-        return information
-    warnings.warn(f"information: float32 rounding repaired in {rounded.sum()} matrices", UserWarning, stacklevel=4)
-    values, vectors = np.linalg.eigh(information[rounded])
-    repaired = information.copy()
+def is_negative(eigenvalues: FloatArray, share: float = SIGN.rounded) -> BoolArray:
+    """Whether the smallest of (..., d) ascending eigenvalues is below 0 by more than a share of the largest."""
+    return np.asarray(eigenvalues[..., 0] < -share * np.abs(eigenvalues[..., -1]))
+
+
+def positive_parts(matrices: FloatArray, wrong: BoolArray | None = None) -> FloatArray:
+    """Symmetric (..., d, d) matrices, the nearest semidefinite ones instead of those that are ``wrong``.
+
+    By default those with a negative eigenvalue that is more than rounding.
+    """
+    wrong = is_negative(np.asarray(np.linalg.eigvalsh(matrices))) if wrong is None else wrong
+    if not wrong.any():
+        return matrices
+    values, vectors = np.linalg.eigh(matrices[wrong])
     positive = (vectors * np.maximum(values, 0)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
-    repaired[rounded] = (positive + np.swapaxes(positive, -1, -2)) / 2
+    repaired = matrices.copy()
+    repaired[wrong] = (positive + np.swapaxes(positive, -1, -2)) / 2
     return repaired
+
+
+def _warn_of_repair(eigenvalues: FloatArray, *, single: bool) -> None:
+    share = float((eigenvalues[:, 0] / np.abs(eigenvalues[:, -1])).min())
+    kind = "float32 rounding repaired" if single else "negative eigenvalues set to 0"
+    text = f"information: {kind} in {len(eigenvalues)} matrices (down to {share:.3g} of the largest eigenvalue)"
+    warnings.warn(f"{text}; all values are those of the repaired matrices", UserWarning, stacklevel=4)
 
 
 def _check_spread(eigenvalues: FloatArray, largest: FloatArray) -> None:

@@ -6,6 +6,7 @@ Every pass reads the table in its own order and makes no copy of it.
 from __future__ import annotations
 
 from ctypes import c_double, c_int, c_int64, c_void_p
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,14 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
 
-__all__ = ["disjoint_slack", "marginal_ends", "overlapping_slack", "second_differences", "smallest_gain_ratio"]
+__all__ = [
+    "GainRatio",
+    "disjoint_slack",
+    "marginal_ends",
+    "overlapping_slack",
+    "second_differences",
+    "smallest_gain_ratio",
+]
 
 BLOCK_BITS = 13
 """Elements below this are in one block of ``near_differences``."""
@@ -103,11 +111,22 @@ def _nothing() -> tuple[FloatArray, IntArray]:
     return np.full(1, np.inf), np.zeros(2, dtype=np.int64)
 
 
-def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget) -> tuple[float, int, int]:
+@dataclass(frozen=True, slots=True)
+class GainRatio:
+    """Ends of a smallest ratio of gains; ``top`` (a position) and ``part`` (a mask over its axes) attain ``upper``."""
+
+    lower: float
+    upper: float
+    top: int
+    part: int
+
+
+def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget, noise: float = 0.0) -> GainRatio:
     """Smallest ``(sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S))``, ``S`` in ``T``, if the gain is not 0.
 
     ``values`` : flat, in C order, one axis of ``sizes[a]`` options an owner, option 0 being none of its elements.
-    Returns the ratio (infinite if no gain is positive), the position of ``T``, and ``S`` as a mask over the axes
+    ``noise`` : by how much a difference of two values may be off; gains up to it lower only the lower end.
+    Returns the ends (infinite if no gain is positive), the position of ``T``, and ``S`` as a mask over the axes
     where ``T`` takes part, the last axis first. Looks at ``prod(2 * sizes - 1)`` pairs, or (spent budget) some.
 
     Raises ``InputError`` : ``values`` is no contiguous array of as many floats, or a size is less than 1.
@@ -115,12 +134,13 @@ def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget) -> 
     options = checked("sizes", sizes, np.int64, (len(sizes),))
     if len(sizes) and sizes.min() < 1:
         raise InputError("sizes", "must be at least 1", sizes.min())
-    table, (ratio, sets) = address(checked("values", values, np.float64, (int(sizes.prod()),))), _nothing()
-    call = function("gain_ratio", None, c_void_p, c_int, c_void_p, *[c_int64] * 2, *[c_void_p] * 3)
+    table = address(checked("values", values, np.float64, (int(sizes.prod()),)))
+    ratios, sets = np.full(2, np.inf), np.zeros(2, dtype=np.int64)
+    call = function("gain_ratio", None, c_void_p, c_int, c_void_p, *[c_int64] * 2, c_double, *[c_void_p] * 3)
     positions = np.empty(1 << len(sizes), dtype=np.int64)
-    found = address(positions), address(ratio), address(sets)
+    found = address(positions), address(ratios), address(sets)
     for first, last in _parts(len(values), max(PAIRS >> len(sizes), 1)):
         if budget.is_over:
             break
-        call(table, len(sizes), address(options), first, last, *found)
-    return float(ratio[0]), int(sets[0]), int(sets[1])
+        call(table, len(sizes), address(options), first, last, noise, *found)
+    return GainRatio(float(ratios[1]), float(ratios[0]), int(sets[0]), int(sets[1]))

@@ -16,9 +16,11 @@ from ratt_opt._validation import check_number
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import checked_values, finite_values
+from ratt_opt.setfunctions.evaluation_error import value_error
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.lattice import disjoint_slack, marginal_ends, overlapping_slack, second_differences
 from ratt_opt.setfunctions.metered import table_within
-from ratt_opt.setfunctions.sampling import TRIALS, NotFound, Violation, sample, slack_of
+from ratt_opt.setfunctions.sampling import INEQUALITIES, TRIALS, NotFound, Violation, sample, slack_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -80,15 +82,37 @@ class _Question:
 
     def sampled(self) -> Violation | NotFound:
         """What random sets say."""
-        return sample(self.f, self.rule, self.tolerance, trials=self.trials, seed=self.seed, budget=self.budget)
+        return sample(
+            self.f,
+            self.rule,
+            self.tolerance,
+            rounding=self.rounding,
+            trials=self.trials,
+            seed=self.seed,
+            budget=self.budget,
+        )
 
-    def witness(self, masks: tuple[int, int], values: FloatArray) -> Violation | None:
-        """Return the pair of sets as a violation, its slack recomputed from the table."""
+    @property
+    def rounding(self) -> float:
+        """By how much a slack may be off: for each value in it, what is known of its error."""
+        f, values = self.f, 1 if self.rule == "non-negative" else len(INEQUALITIES[self.rule].split("f(")) - 1
+        if isinstance(f, InformationObjective):
+            return values * value_error(f, list(np.arange(f.n)[:, None]), 0.0)
+        return values * f.rounding
+
+    def witness(self, masks: tuple[int, int], values: FloatArray) -> Violation | NotFound | None:
+        """Return the pair of sets as a violation, its slack recomputed from the table.
+
+        ``None`` if it is none within the tolerance; :class:`NotFound` if it is one, but no larger than rounding.
+        """
         first, second = (np.array([mask]) for mask in masks)
         slack = float(slack_of(values.take, self.rule, first, second)[0])
         limit = self.tolerance * max(float(values.max()), -float(values.min()))
         if slack >= -limit:
             return None
+        if slack >= -(rounding := self.rounding):
+            stop, trials = Stop.EXHAUSTED, len(values)
+            return NotFound(rule=self.rule, trials=trials, smallest_slack=slack, tolerance=rounding, stop=stop)
         a, b = (tuple(e for e in range(self.f.n) if mask >> e & 1) for mask in masks)
         return Violation(rule=self.rule, a=a, b=b, slack=slack, tolerance=limit)
 
@@ -133,20 +157,21 @@ def find_monotonicity_violation(
 ) -> Violation | NotFound | None:
     """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
 
-    ``tolerance`` : how negative counts, relative to the largest absolute value of the function
+    ``tolerance`` : how negative counts, relative to the largest absolute value of the function; of criteria, at least
+        what rounding may do: they are differences from a prior's, which may be large beside them
     ``trials``, ``seed`` : of the sampled search, if the ground set has more than 24 elements or time is short
     ``time_limit``, ``max_evaluations`` : seconds, a minute by default, and values of ``f``, unlimited by default
     ``budget`` : an outer search's budget: its seconds and interrupts count too
 
     Returns the witness; ``None`` if there is none, by a look at every set (up to 24 elements) or by theory
     (information criteria: added information is positive semidefinite, up to the rounding their input rule admits);
-    otherwise :class:`NotFound`, which is false and proves nothing.
+    otherwise :class:`NotFound`, which is false and proves nothing: sampled, or a fall that may be rounding.
 
     Source: ratt.tex, Section III.
     """
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
     asked = _Question.of(f, "non-decreasing", tolerance, trials=trials, seed=seed, budget=own)
-    if f.n > LARGEST_EXACT and f.is_non_decreasing:
+    if f.is_non_decreasing and (f.n > LARGEST_EXACT or is_proved(f)):
         return None
     values = asked.table()
     if values is None:
@@ -178,7 +203,12 @@ def find_submodularity_violation(
     """
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
     asked = _Question.of(f, "submodular", tolerance, trials=trials, seed=seed, budget=own)
-    return None if f.n > LARGEST_EXACT and f.is_submodular else _second_order(asked)
+    return None if f.is_submodular and (f.n > LARGEST_EXACT or is_proved(f)) else _second_order(asked)
+
+
+def is_proved(f: SetFunction) -> bool:
+    """Whether theory knows its properties: one of the library's criteria, whose formula is no user's own."""
+    return isinstance(f, InformationObjective) and f.error_scale(np.ones(f.n_targets)) is not None
 
 
 @Step("looking for a violation of modularity")

@@ -16,7 +16,7 @@ from ratt_opt._validation import (
     readonly,
 )
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import SizedFunction
+from ratt_opt.setfunctions.base import SizedFunction, are_exact
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,6 +36,11 @@ class Modular(SizedFunction):
     def __init__(self, weights: ArrayLike) -> None:
         self.weights: FloatArray = check_finite("weights", weights, ndim=1)
         self._n = len(self.weights)
+
+    @property
+    def has_exact_values(self) -> bool:
+        """Whether all that is added up is whole."""
+        return are_exact(self.weights, self.n)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
@@ -65,6 +70,11 @@ class PartitionMatroidRank(SizedFunction):
         if (self.capacity < 0).any():
             raise InputError("capacity", "must not be negative", int(self.capacity.min()))
         self._n, self._order = len(self.weights), np.argsort(-self.weights, kind="stable")
+
+    @property
+    def has_exact_values(self) -> bool:
+        """Whether all that is added up is whole."""
+        return are_exact(self.weights, self.n)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values: the greedy algorithm, heaviest first, which is exact for a matroid."""

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["TRIALS", "NotFound", "Violation", "sample", "slack_of"]
+__all__ = ["INEQUALITIES", "TRIALS", "NotFound", "Violation", "sample", "slack_of"]
 
 Sets = TypeVar("Sets", "BoolArray", "IntArray")
 
@@ -120,11 +120,19 @@ class _Worst:
 
 
 def sample(
-    f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: int, budget: Budget | None = None
+    f: SetFunction,
+    rule: str,
+    tolerance: float,
+    *,
+    rounding: float,
+    trials: int,
+    seed: int,
+    budget: Budget | None = None,
 ) -> Violation | NotFound:
     """Try random pairs of sets of every size, then climb from the worst one by adding or removing elements.
 
-    ``tolerance`` is relative to the largest absolute value seen. A spent ``budget`` ends it early.
+    ``tolerance`` is relative to the largest absolute value seen, ``rounding`` is absolute: a slack may be off by it.
+    A spent ``budget`` ends it early.
     """
     trials = check_integer("trials", trials, low=1)
     own, worst, stop = budget or Budget(), _Worst(np.zeros((2, f.n), dtype=np.bool_)), Stop.HEURISTIC
@@ -141,7 +149,7 @@ def sample(
         stop = out.stop
     if not worst.tried:
         return NotFound(rule=rule, trials=0, smallest_slack=np.inf, tolerance=0.0, stop=stop)
-    limit = tolerance * worst.scale
+    limit = max(tolerance * worst.scale, rounding)
     alone = float(slack_of(f.evaluate, rule, *worst.pair[:, None])[0])  # afresh: a batch may round in another way
     if alone >= -limit:
         return NotFound(rule=rule, trials=worst.tried, smallest_slack=worst.slack, tolerance=limit, stop=stop)

@@ -26,7 +26,7 @@ def check_ratio(f, found, exact):
     if found.added:
         assert not set(found.base) & set(found.added)
         total = sum(gain(f, found.base, [w]) for w in found.added)
-        assert min(total / gain(f, found.base, found.added), 1) == pytest.approx(found.upper, abs=1e-9)
+        assert min(total / gain(f, found.base, found.added), 1) == pytest.approx(found.upper, abs=1e-7)
 
 
 def check_curvature(f, found, exact):
@@ -35,7 +35,7 @@ def check_curvature(f, found, exact):
     if found.element is not None:
         assert set(found.small) <= set(found.large)
         kept = gain(f, found.large, [found.element]) / gain(f, found.small, [found.element])
-        assert 1 - kept == pytest.approx(found.lower, abs=1e-9)
+        assert 1 - kept == pytest.approx(found.lower, abs=1e-7)
 
 
 def test_both_agree_with_their_definitions():
@@ -46,8 +46,8 @@ def test_both_agree_with_their_definitions():
         owners = random_owners(rng, n)
         ratio = ro.submodularity_ratio(f, owners)
         bent = ro.generalised_curvature(f, owners)
-        assert ratio.lower == ratio.upper
-        assert bent.lower == bent.upper
+        assert 0 <= ratio.upper - ratio.lower <= 1e-11
+        assert 0 <= bent.upper - bent.lower <= 1e-11
         check_ratio(f, ratio, oracle.submodularity_ratio(f.values, owners))
         check_curvature(f, bent, oracle.generalised_curvature(f.values, owners))
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt.setfunctions.information import InformationObjective
+from tests.exact_values import is_definite, matrix
 from tests.strategies import OBJECTIVES, information_data
 
 
@@ -121,6 +122,7 @@ def test_bad_matrices_are_refused(kind, prior, information, text):
 def test_rounding_below_zero_is_accepted_and_indices_are_checked():
     f = ro.TraceObjective([np.eye(2)], [[np.diag([1.0, -1e-10])]])
     assert f([0]) == pytest.approx(0.5)
+    assert (f.repaired, f.information[0, 0, 1, 1]) == (0, -1e-10)  # slight beside the prior: ends account for it
     for bad in ([1], [-1], [0, 0], [0.5]):
         with pytest.raises(ro.InputError):
             f(bad)
@@ -161,3 +163,36 @@ def test_float32_information_is_repaired_with_a_warning(defect: float, size: flo
     np.testing.assert_allclose(f.information[0, 0], np.diag([given_matrix[0, 0], 0]), atol=1e-12 * size)
     with pytest.raises(ro.InputError, match="positive semidefinite"):
         ro.TraceObjective([np.eye(2)], [[given_matrix.astype(np.float64)]])
+
+
+@given(st.floats(1.1e-13, 9.9e-10), st.floats(1e-3, 1e3))
+def test_negative_eigenvalues_that_would_count_are_set_to_zero_with_a_warning(defect: float, size: float) -> None:
+    prior, matrix = np.diag([1e-2, 1e-3 / defect]) / size, np.diag([size, -defect * size])
+    with pytest.warns(UserWarning, match="negative eigenvalues set to 0 in 2 matrices"):
+        f = ro.TraceObjective([prior], [[matrix], [matrix]])
+    assert f.repaired == 2
+    assert f.information.tolist() == [[np.diag([size, 0.0]).tolist()]] * 2
+    assert f.with_information(np.zeros((1, 1, 2, 2))).repaired == 0
+    assert ro.find_monotonicity_violation(f) is None
+
+
+def test_a_prior_that_is_definite_by_rounding_only_is_refused():
+    """Its smallest eigenvalue is computed as 6e-16 to 2e-15, and is below 0 in some of them."""
+    rng, refused = np.random.default_rng(8), 0
+    for _ in range(300):
+        turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        prior = (turn * [1.0, 0.5, 4e-16]) @ turn.T
+        prior = (prior + prior.T) / 2
+        try:
+            f = ro.TraceObjective([prior], np.zeros((1, 1, 3, 3)))
+        except ro.InputError:
+            refused += 1
+        else:
+            assert is_definite(matrix(f.prior[0].tolist()))
+    assert 0 < refused < 300
+
+
+@pytest.mark.parametrize("entry", [1e60, 1e-60])
+def test_outputs_whose_squares_are_no_floats_are_refused(entry: float) -> None:
+    with pytest.raises(ro.InputError, match="output must have rows whose largest entry has a size in"):
+        ro.TraceObjective([np.eye(2)], np.zeros((1, 1, 2, 2)), output=[[entry, 0.0]])

@@ -71,7 +71,9 @@ def test_the_gain_ratio_is_that_of_the_definition(sizes):
                 if values[top] > values[base]:
                     ratios[top, mask] = sum(each) / (values[top] - values[base])
         flat = np.ravel(values)
-        ratio, top, mask = lattice.smallest_gain_ratio(flat, np.array(sizes, dtype=np.int64), Budget())
+        found = lattice.smallest_gain_ratio(flat, np.array(sizes, dtype=np.int64), Budget())
+        ratio, top, mask = found.upper, found.top, found.part
+        assert found.lower == ratio  # without noise
         assert ratio == pytest.approx(min(ratios.values(), default=np.inf), rel=1e-12)
         where = tuple(int(k) for k in np.unravel_index(top, sizes)) if sizes else ()
         assert not ratios or ratios[where, mask] == pytest.approx(ratio, rel=1e-12)

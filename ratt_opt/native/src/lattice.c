@@ -167,19 +167,24 @@ static int fill_positions(int axes, const int64_t *sizes, int64_t choice, int64_
     return count;
 }
 
-/* Lower *ratio to (sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S)), if that gain is positive, of T at positions
-   first..last - 1 and S in T; `sets`: T and the mask of S. `values`: one axis of `sizes` (axes) options each, option 0 being
-   none; `positions` (1 << axes) is spare. */
-EXPORTED void gain_ratio(const double *values, int axes, const int64_t *sizes, int64_t first, int64_t last, int64_t *positions,
-                         double *ratio, int64_t *sets) {
+/* Lower ratios[0] to (sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S)), if that gain is positive, of T at positions
+   first..last - 1 and S in T; `sets`: T and the mask of S. A difference may be off by `noise`: ratios[0] is what the ratio
+   is at most, of gains above it, ratios[1] what it is at least, of all. If T has one element more than S, it is 1.
+   `values`: one axis of `sizes` (axes) options each, option 0 being none; `positions` (1 << axes) is spare. */
+EXPORTED void gain_ratio(const double *values, int axes, const int64_t *sizes, int64_t first, int64_t last, double noise,
+                         int64_t *positions, double *ratios, int64_t *sets) {
     for (int64_t top = first; top < last; top++) {
         int count = fill_positions(axes, sizes, top, positions);
         for (int64_t part = 0; part < ((int64_t)1 << count) - 1; part++) {
             double base = values[positions[part]], gain = values[top] - base, total = 0.0;
+            int added = 0;
             if (!(gain > 0.0)) continue;
             for (int i = 0; i < count; i++)
-                if (!(part >> i & 1)) total += values[positions[part | (int64_t)1 << i]] - base;
-            if (total < *ratio * gain) *ratio = total / gain, sets[0] = top, sets[1] = part;
+                if (!(part >> i & 1)) total += values[positions[part | (int64_t)1 << i]] - base, added++;
+            double sure = gain - noise, most = total + added * noise, large = gain + noise, least = total - added * noise;
+            if (added == 1) sure = most = large = least = gain;
+            if (sure > 0.0 && most < ratios[0] * sure) ratios[0] = most / sure, sets[0] = top, sets[1] = part;
+            if (least < ratios[1] * large) ratios[1] = least / large;
         }
     }
 }

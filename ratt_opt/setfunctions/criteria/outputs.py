@@ -8,12 +8,15 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.information import LARGEST, InformationObjective
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 __all__ = ["StateCriterion"]
+
+LARGEST_OUTPUT = LARGEST**0.5
+"""Largest entry of an output, and inverse of the least: squares have the size that entries of a prior may have."""
 
 
 class StateCriterion(InformationObjective):
@@ -63,7 +66,7 @@ class StateCriterion(InformationObjective):
 def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
     """(M, q, d) matrices of full row rank, from (q, d) for all targets or (M, q, d).
 
-    InputError : another shape, or rows that depend on each other.
+    InputError : another shape, an entry whose square is no float, or rows that depend on each other.
     """
     targets, d = check_finite("prior", prior, ndim=3).shape[:2]
     matrices = given = check_finite("output", output)
@@ -71,6 +74,10 @@ def _check_output(output: ArrayLike | None, prior: ArrayLike) -> FloatArray:
         matrices = np.broadcast_to(matrices, (targets, *matrices.shape))
     if matrices.ndim != 3 or matrices.shape[0] != targets or matrices.shape[2] != d or not 1 <= matrices.shape[1] <= d:
         raise InputError("output", f"must have shape (q, {d}) or ({targets}, q, {d}), 1 <= q <= {d}", given.shape)
+    sizes = np.abs(matrices).max(axis=-1)
+    if sizes.max() > LARGEST_OUTPUT or sizes.min() < 1 / LARGEST_OUTPUT:
+        rule = f"must have rows whose largest entry has a size in [{1 / LARGEST_OUTPUT:g}, {LARGEST_OUTPUT:g}]"
+        raise InputError("output", rule, float(sizes.max() if sizes.max() > LARGEST_OUTPUT else sizes.min()))
     if (np.linalg.matrix_rank(matrices) < matrices.shape[1]).any():
         raise InputError("output", "must have independent rows", given.shape)
     return readonly(matrices)
