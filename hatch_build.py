@@ -2,7 +2,7 @@
 
 A C compiler of the system is used where one works; elsewhere the wheel ``ziglang`` is asked for, which brings one. The
 library needs no header of Python's, so one wheel serves every version of it. ``python hatch_build.py`` compiles in
-place, after a source of an editable installation has changed.
+place, after a source of an editable installation has changed; ``RATT_CFLAGS`` adds options to the compiler's.
 """
 
 from __future__ import annotations
@@ -48,7 +48,8 @@ def _works(command: list[str]) -> bool:
 def _command(compiler: list[str], sources: list[Path], target: Path) -> list[str]:
     position_independent = [] if sys.platform == "win32" else ["-fPIC"]
     mathematics = [] if sys.platform == "win32" else ["-lm"]
-    options = [*OPTIONS, *SAME_BITS, *position_independent, f'-DSOURCES="{NATIVE["fingerprint"]()}"']
+    asked = shlex.split(os.environ.get("RATT_CFLAGS", ""))
+    options = [*OPTIONS, *SAME_BITS, *position_independent, *asked, f'-DSOURCES="{NATIVE["fingerprint"]()}"']
     return [*compiler, *options, "-o", str(target), *map(str, sources), *mathematics]
 
 
