@@ -61,6 +61,9 @@ class ProofError(Exception):
 
     report: object = None
 
+    def __init__(self, fault: object = "") -> None:
+        super().__init__(printable(str(fault)))
+
 
 class UndecidedError(ProofError):
     """A certificate is neither proved nor refuted within the verifier's limits; the text names the limit."""

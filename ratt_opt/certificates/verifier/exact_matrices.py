@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, fmpq, fmpq_mat, fmpz_mat
 
-from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.certificates.verifier.work import afford
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -45,7 +45,7 @@ def definite(matrix: fmpq_mat) -> int:
     The eigenvalues of a symmetric matrix are real. None of them is negative if and only if the signs of its
     characteristic polynomial's coefficients alternate, but for zeros: then it has one sign at all negative numbers.
     """
-    tick()
+    afford(matrix)
     if matrix.nrows() == 2 and matrix[0, 0] > 0 and (minor := matrix.det()) >= 0:
         return 1 if minor > 0 else 0
     coefficients = matrix.numer_denom()[0].charpoly().coeffs()

@@ -21,7 +21,7 @@ from flint import arb, fmpq
 
 from ratt_opt.certificates.verifier.exact_matrices import largest, missing, total, trace
 from ratt_opt.certificates.verifier.reading import need
-from ratt_opt.certificates.verifier.work import hold, tick
+from ratt_opt.certificates.verifier.work import afford, hold, tick
 
 if TYPE_CHECKING:
     from flint import fmpq_mat
@@ -99,6 +99,7 @@ class MarginalBounds:
     def _beside_of(self, target: int, numbers: tuple[int, ...]) -> _Beside:
         matrix = sum((self._told[k].matrices[target] for k in numbers), self._about.inverse[target])
         hold(matrix[0, 0], matrix.nrows() ** 2)
+        afford(matrix)
         logdet = arb(matrix.det()).log()
         before = self._beside(target, ()).logdet if numbers else logdet
         return _Beside(matrix, logdet, self._about.weights[target] * (logdet - before))
@@ -106,5 +107,7 @@ class MarginalBounds:
     def _gain_of(self, target: int, numbers: tuple[int, ...], number: int) -> Any:
         """What is told adds to the value of one target, beside what else is told of it."""
         known = self._beside(target, numbers)
-        after = arb((known.matrix + self._told[number].matrices[target]).det()).log()
+        matrix = known.matrix + self._told[number].matrices[target]
+        afford(matrix)
+        after = arb(matrix.det()).log()
         return self._about.weights[target] * (after - known.logdet)

@@ -101,12 +101,17 @@ def load(path: str | Path) -> dict[str, Any]:
         if isinstance(error, InputError):
             raise
         raise _refusal("file", "must be complete JSON in UTF-8", error) from None
+    check_format(document)
+    return document  # type: ignore[no-any-return]
+
+
+def check_format(document: object) -> None:
+    """Refuse a document of another format or version."""
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise _refusal("format", f"must be {FORMAT!r}", document.get("format") if type(document) is dict else "none")
     if type(document.get("version")) is not int or document["version"] != VERSION:
         rule = f"must be {VERSION}: write the certificate again with this release"
         raise _refusal("version", rule, document.get("version"))
-    return document
 
 
 def document_hash(document: object) -> str:
@@ -187,8 +192,13 @@ def places(d: int) -> list[int]:
 
 
 def rows_of(where: str, value: Any, columns: int) -> fmpq_mat:
-    """Return a matrix of at least one row from its entries, row by row."""
+    """Return a matrix from its entries, row by row."""
     flat = [exact(where, x) for x in array(where, value)]
-    if not flat or not columns or len(flat) % columns:
-        raise _refusal(where, f"must hold rows of {columns} numbers", f"{len(flat)} numbers")
     return fmpq_mat(len(flat) // columns, columns, flat)
+
+
+def check_rows(where: str, value: Any, columns: int) -> None:
+    """Check that a list holds at least one row and at most as many as columns; more would depend on each other."""
+    count, rest = divmod(len(array(where, value)), max(columns, 1))
+    if rest or not 0 < count <= columns:
+        raise _refusal(where, f"must hold rows of {columns} numbers, 1 to {columns} of them", f"{len(value)} numbers")

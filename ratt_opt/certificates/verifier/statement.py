@@ -5,11 +5,24 @@ Notation, per target: ``L(S) = prior^{-1} + sum of the information of S``.
 
 from __future__ import annotations
 
+from typing import Any
+
 from flint import fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier.exact_matrices import definite, missing, total, trace
-from ratt_opt.certificates.verifier.reading import array, exact, fields, index, indices, links, need, packed, rows_of
-from ratt_opt.certificates.verifier.work import hold, refuse_wide, tick
+from ratt_opt.certificates.verifier.reading import (
+    array,
+    check_rows,
+    exact,
+    fields,
+    index,
+    indices,
+    links,
+    need,
+    packed,
+    rows_of,
+)
+from ratt_opt.certificates.verifier.work import afford, hold, refuse_wide
 
 __all__ = ["PRECISIONS", "Statement"]
 
@@ -40,15 +53,15 @@ class Statement:
         need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
         need(self.is_whole or kind != "logdet", "problem: the log-det has no output")
         self.objective, self.d = kind, index("dimension", d, 101)
-        self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(array("prior", prior))]
-        m = len(self.prior)
+        m, size = len(array("prior", prior)), self.d * (self.d + 1) // 2
         rows = [array(f"information[{e}]", row, m) for e, row in enumerate(array("information", information))]
-        self.information = [[packed(f"information[{e}]", x, self.d) for x in row] for e, row in enumerate(rows)]
-        self.weights = [exact("weights", w) for w in array("weights", weights, m)]
-        self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
-        stated = [rows_of("output", c, self.d) for part in output for c in array("output", part, m)]
-        self.output = [self.identity] * m if self.is_whole else stated
-        self._read_team(owners, pairs, (blinded, cut), (robots, safe_links))
+        named = [(f"prior[{j}]", p) for j, p in enumerate(prior)]
+        for where, x in (*named, *((f"information[{e}]", x) for e, row in enumerate(rows) for x in row)):
+            array(where, x, size)
+        for c in (c for part in output for c in array("output", part, m)):
+            check_rows("output", c, self.d)
+        array("weights", weights, m)
+        self._read_team(owners, pairs, (blinded, cut), (robots, safe_links), len(rows))
         self.plan = tuple(index("plan", e, len(self.owner)) for e in array("plan", plan, self.n))
         need(
             self.d and m and self.n and all(self.choices),
@@ -56,15 +69,16 @@ class Statement:
         )
         need(self.safe_links <= self.links, "problem: a protected link does not exist")
         need(all(self.owner[e] == i for i, e in enumerate(self.plan)), "plan: an element is not its robot's")
+        self._read_numbers(prior, rows, weights, output)
         need(all(w > 0 for w in self.weights), "problem: a weight is not positive")
         refuse_wide((x for row in (self.prior, *self.information) for x in row), self.d)
         need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
         self._derive(prior_range)
 
     def _read_team(
-        self, owners: object, pairs: object, budgets: tuple[object, object], safe: tuple[object, object]
+        self, owners: object, pairs: object, budgets: tuple[object, object], safe: tuple[object, object], elements: int
     ) -> None:
-        self.owner = [index("owners", i, LARGEST_TEAM) for i in array("owners", owners, len(self.information))]
+        self.owner = [index("owners", i, LARGEST_TEAM) for i in array("owners", owners, elements)]
         self.n = n = max(self.owner, default=-1) + 1
         self.choices = tuple(tuple(e for e, i in enumerate(self.owner) if i == k) for k in range(n))
         self.links, self.safe_links = links("links", pairs, n), links("protected_links", safe[1], n)
@@ -77,6 +91,15 @@ class Statement:
             index("alpha_c", budgets[1], len(self.links) + 1),
         )
         self.safe_robots = frozenset(indices("protected_robots", safe[0], n))
+
+    def _read_numbers(self, prior: list[Any], rows: list[list[Any]], weights: list[Any], output: list[Any]) -> None:
+        """Read matrices and weights exactly, once their shapes are those of the problem."""
+        self.prior = [packed(f"prior[{j}]", p, self.d) for j, p in enumerate(prior)]
+        self.information = [[packed(f"information[{e}]", x, self.d) for x in row] for e, row in enumerate(rows)]
+        self.weights = [exact("weights", w) for w in weights]
+        self.identity = fmpq_mat(self.d, self.d, [int(i == j) for i in range(self.d) for j in range(self.d)])
+        stated = [rows_of("output", c, self.d) for part in output for c in part]
+        self.output = stated or [self.identity] * len(prior)
 
     def _derive(self, prior_range: object) -> None:
         """What the checks need; information must be semidefinite but for rounding."""
@@ -96,7 +119,7 @@ class Statement:
             need(definite(room) > 0, f"problem: information of target {j} is not positive semidefinite")
 
     def _inverse(self, prior: fmpq_mat) -> fmpq_mat:
-        tick()
+        afford(prior)
         inverse = prior.inv()
         hold(inverse[0, 0], self.d * self.d)
         return inverse

@@ -27,7 +27,7 @@ from ratt_opt.certificates.verifier.reading import (
     walk,
 )
 from ratt_opt.certificates.verifier.statement import PRECISIONS
-from ratt_opt.certificates.verifier.work import hold, tick
+from ratt_opt.certificates.verifier.work import afford, hold, tick
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
@@ -281,7 +281,9 @@ class _Proof:
             if about.objective == "logdet":
                 need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
                 weight = y * w
-                constant -= w * d + w * arb((y * inverse).det()).log()
+                product = y * inverse
+                afford(product)
+                constant -= w * d + w * arb(product.det()).log()
             else:
                 weight = y * y.transpose() * w
                 constant -= 2 * w * trace(c * y)

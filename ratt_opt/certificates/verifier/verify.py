@@ -52,7 +52,8 @@ def verify_certificate(
 def verify_document(
     document: dict[str, Any], *, expected_problem: object = None, time_limit: float | None = SECONDS
 ) -> Verified:
-    """The same of a document that is loaded already; it stays as it is."""
+    """Decide the same of a document that is loaded already; it stays as it is."""
+    reading.check_format(document)
     with limited(_checked(time_limit)):
         return _decide(dict(document), expected_problem)
 

@@ -18,9 +18,20 @@ from ratt_opt.errors import UndecidedError
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from flint import fmpq, fmpq_mat
+    from flint import fmpq, fmpq_mat, fmpz_mat
 
-__all__ = ["SECONDS", "hold", "limited", "refuse_wide", "seconds_left", "tell", "tick", "watched"]
+__all__ = [
+    "SECONDS",
+    "MatrixCost",
+    "afford",
+    "hold",
+    "limited",
+    "refuse_wide",
+    "seconds_left",
+    "tell",
+    "tick",
+    "watched",
+]
 
 SECONDS = 600.0
 """For one file, unless the caller says otherwise; what the library writes for 30 robots takes seconds."""
@@ -30,6 +41,19 @@ WIDEST = 2**28
 """Largest ``d^4 * bits`` of a matrix: its exact inverse takes some 2e-8 s of each (4.6 s at d = 30, 300 bits)."""
 BITS_OF_A_FLOAT = 2200
 """Numerator and common denominator of the widest range that binary64 floats can have, in bits."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MatrixCost:
+    """Time of one exact operation on a matrix.
+
+    ``seconds`` : for each of ``d^4 * bits``, an upper estimate (measured: 4e-11 to 2e-8). A larger one refuses more
+    files at the end of their time; a smaller one lets the limit be overrun.
+    ``short`` : seconds below which an operation is not estimated at all; the estimate takes time, too.
+    """
+
+    seconds: float = 2e-8
+    short: float = 0.1
 
 
 @dataclass(slots=True)
@@ -92,6 +116,21 @@ def hold(number: fmpq, count: int = 1) -> None:
     work.bits += count * (int(number.p).bit_length() + int(number.q).bit_length())
     if work.bits > MOST_BITS:
         raise UndecidedError(f"not decided within {MOST_BITS // 2**23} MiB of exact numbers")
+
+
+def afford(matrix: fmpq_mat | fmpz_mat) -> None:
+    """Raise :class:`UndecidedError` where one inverse, determinant or polynomial of a matrix outlasts the time left.
+
+    Nothing looks at the clock inside such an operation, so its time is estimated before.
+    """
+    tick()
+    work, d, cost = _CURRENT.get(), matrix.nrows(), MatrixCost()
+    if work is None or d**4 * BITS_OF_A_FLOAT * cost.seconds <= cost.short:
+        return
+    whole, unit = matrix.numer_denom() if hasattr(matrix, "numer_denom") else (matrix, 1)
+    bits = max(int(x).bit_length() for x in whole.entries()) + int(unit).bit_length()
+    if d**4 * bits * cost.seconds > work.ends - monotonic():
+        raise UndecidedError(f"not decided within {work.limit:.2g} s: a matrix of {d} rows has numbers of {bits} bits")
 
 
 def refuse_wide(matrices: Iterable[fmpq_mat], d: int) -> None:

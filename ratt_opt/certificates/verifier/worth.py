@@ -17,7 +17,7 @@ from flint import arb, ctx, fmpq, fmpq_mat, fmpz_mat
 from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
 from ratt_opt.certificates.verifier.reading import need, places
 from ratt_opt.certificates.verifier.statement import PRECISIONS
-from ratt_opt.certificates.verifier.work import hold, tick
+from ratt_opt.certificates.verifier.work import afford, hold, tick
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -141,8 +141,9 @@ class Worth:
     def _matrices(self, known: Known) -> Iterator[Any]:
         d, of_whole = self.about.d, places(self.about.d)
         for k in range(0, len(known), d * (d + 1) // 2):
-            tick()
-            yield fmpz_mat(d, d, [known[k + place] for place in of_whole])
+            matrix = fmpz_mat(d, d, [known[k + place] for place in of_whole])
+            afford(matrix)
+            yield matrix
 
     def _scales_at(self, precision: int) -> list[int]:
         """By target, its weight over the unit of L, in units of ``2^-precision``, rounded up."""

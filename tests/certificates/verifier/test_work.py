@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from time import monotonic
+from time import monotonic, process_time
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from ratt_opt import InputError, ProofError, verify_certificate
+from ratt_opt import FileFormatError, InputError, ProofError, verify_certificate
 from ratt_opt.certificates.verifier import work
+from ratt_opt.certificates.verifier.verify import verify_document
 from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
@@ -102,3 +103,47 @@ def test_memory_is_a_limit_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_a_limit_is_a_positive_number(limit: Any, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="time_limit must be a positive number"):
         verify_certificate(tmp_path / "none.json", time_limit=limit)
+
+
+@pytest.mark.parametrize("rows", [2, 150, 2000])
+def test_rows_of_an_output_are_no_more_than_coordinates(rows: int, tmp_path: Path) -> None:
+    """Structure is looked at before any number is: short files of many rows held the verifier for minutes."""
+    document = _document(1, 4, [LEAF])
+    document["problem"]["output"] = [[10.0 ** (37 * k % 280 - 140) for k in range(rows)]]
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(document))
+    began = process_time()
+    with pytest.raises(FileFormatError, match="output must hold rows of 1 numbers, 1 to 1 of them; got"):
+        verify_certificate(path, time_limit=2)
+    assert process_time() - began < 1
+
+
+@pytest.mark.parametrize(("d", "exponent"), [(30, 150), (40, 80), (18, 2000)])
+@pytest.mark.parametrize("seconds", [0.02, 0.5])
+def test_one_long_operation_does_not_outlast_the_limit(d: int, exponent: int, seconds: float, tmp_path: Path) -> None:
+    path = tmp_path / "c.json"
+    path.write_text(json.dumps(_document(d, exponent, [LEAF])))
+    began = process_time()
+    with pytest.raises((UndecidedError, ProofError)):
+        verify_certificate(path, time_limit=seconds)
+    assert process_time() - began < seconds + 0.5
+
+
+@pytest.mark.parametrize(
+    ("field", "value"), [("format", "another"), ("version", 99), ("version", True), ("format", None)]
+)
+def test_documents_of_other_formats_are_refused_like_files(field: str, value: object) -> None:
+    document = _document(2, 4, [LEAF], upper=1e9)
+    assert verify_document(document).upper == 1e9
+    with pytest.raises(FileFormatError, match=f"certificate {field} must be"):
+        verify_document({**document, field: value})
+    with pytest.raises(FileFormatError, match="certificate format must be"):
+        verify_document([])  # type: ignore[arg-type]
+
+
+def test_names_in_faults_are_shown_as_text() -> None:
+    document = _document(2, 4, [LEAF], upper=1e9)
+    document["lower"] = {"conclusion": "forced", "sets": {"size": 1, "tree": [{"\x1b[2J\nx\u202e": 1}]}}
+    with pytest.raises(ProofError) as caught:
+        verify_document(document)
+    assert str(caught.value).isprintable()
