@@ -12,7 +12,7 @@ import networkx as nx
 import numpy as np
 
 from analysis.tables import print_table, write_csv
-from ratt_opt.graph.largest_group.smallest import smallest_largest_group
+from ratt_opt.attack.edge_cuts.smallest import smallest_largest_group
 from ratt_opt.graph.survivor_sizes import caa
 
 LARGEST_PARTITIONED = 30
@@ -113,7 +113,7 @@ def _disk_sizes(seed: int, degree: int, share: int, n_robots: int) -> tuple[int,
     graph = nx.empty_graph(n_robots)
     graph.add_edges_from(nearest.tolist())
     alpha_c = len(nearest) // share
-    return smallest_largest_group(graph, alpha_c, method="enumeration").upper, caa(n_robots, alpha_c).n_max
+    return smallest_largest_group(graph, alpha_c, method="auto").upper, caa(n_robots, alpha_c).n_max
 
 
 def main() -> None:

@@ -186,8 +186,10 @@ from .curvatures.ratios import (
 # == The communication graph
 from .graph.any_networkx import communication_graph as communication_graph
 from .graph.survivor_sizes import caa as caa, CaaResult as CaaResult
-from .graph.largest_group.smallest import smallest_largest_group as smallest_largest_group
+from .attack.edge_cuts.smallest import smallest_largest_group as smallest_largest_group
 from .graph.largest_group.counting import LargestGroup as LargestGroup
+from .attack.edge_cuts.fewest import fewest_cuts as fewest_cuts
+from .attack.edge_cuts.fewest import FewestCuts as FewestCuts
 from .graph.outcomes import (
     non_dominated_outcomes as non_dominated_outcomes,
     count_outcomes as count_outcomes,

@@ -17,8 +17,7 @@ from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.graph.group_list import MOST_CUT, groups_of
-from ratt_opt.graph.separable_groups import LARGEST_MASK
+from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 
 if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask

@@ -13,8 +13,7 @@ from ratt_opt.attack.listed_columns import ListedColumns
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.verifier.work import seconds_left
 from ratt_opt.graph.communication import mask_of
-from ratt_opt.graph.group_list import MOST_CUT, groups_of
-from ratt_opt.graph.separable_groups import LARGEST_MASK
+from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray

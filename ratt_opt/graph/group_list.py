@@ -19,10 +19,12 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["BRANCH", "MOST_CUT", "NARROW", "GroupList", "groups_of"]
+__all__ = ["BRANCH", "LARGEST_MASK", "MOST_CUT", "NARROW", "GroupList", "groups_of"]
 
 MOST_CUT = 255
 """Links that leave a group, up to which their number is a byte."""
+LARGEST_MASK = 60
+"""Most robots whose groups are listed as bit masks of 64."""
 NARROW = 32
 """Robots up to which a group's bit mask has 32 bits."""
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import counted
+from ratt_opt.attack.edge_cuts.smallest import largest_group_soon
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget, Stop
@@ -20,8 +21,6 @@ from ratt_opt.certificates.certification import INTERRUPTED, NOT_ASKED_FOR, Cert
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
-from ratt_opt.graph.largest_group.counting import by_counting
-from ratt_opt.graph.largest_group.smallest import SUBSETS_SOON, by_subsets
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.missions.first_step import first_step, first_world
@@ -337,11 +336,7 @@ def _n_max_upper(problem: Problem, lower: int, budget: Budget) -> int | None:
     """A size of the largest group that some cut leaves: ``lower`` itself if that is known to be the smallest."""
     if problem.threat.links_alike:
         return lower
-    links = replace(problem.threat, alpha_s=0)
-    found = by_counting(links, budget).upper
-    if found > lower and problem.n_robots <= SUBSETS_SOON:
-        found = by_subsets(links, budget).upper
-    return found
+    return largest_group_soon(replace(problem.threat, alpha_s=0), budget).upper
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ RECORD = FOLDER / "loops.sha256"
 
 COMPILED = """
     annealing column_annealing contexts cover cover_attacks cover_dive cut_annealing disjoint dominance elements
-    exchanges flow greedy group_tree groups keeping lattice layout levels marginal_dive needs outputs partitions
+    exchanges flow greedy group_tree groups keeping kept_links lattice layout levels marginal_dive needs outputs
     polytopes pricing sets_of_size team thresholds
 """
 HEADERS = "covers elements group_search marginals random records sets team"

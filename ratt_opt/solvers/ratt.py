@@ -8,8 +8,8 @@ from math import inf, isinf
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
+from ratt_opt.attack.edge_cuts.smallest import bound_soon
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.graph.largest_group.smallest import bound_soon
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.running.progress import Step

@@ -13,6 +13,7 @@ from ratt_opt.attack import exact_cover, sets_below
 from ratt_opt.attack.all_sets import decide
 from ratt_opt.attack.annealing import AnnealRecord
 from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, Duals, DualsRecord
+from ratt_opt.attack.edge_cuts.kept_links import KeptLinksRecord
 from ratt_opt.attack.exact_cover import CoverRecord, ExactCover
 from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
 from ratt_opt.attack.master import best_duals
@@ -25,7 +26,6 @@ from ratt_opt.certificates.group_tree import TreeRecord
 from ratt_opt.curvatures.planar.contexts import DescentRecord
 from ratt_opt.graph import group_list
 from ratt_opt.graph.largest_group.annealed_cut import CutAnnealRecord
-from ratt_opt.graph.separable_groups import LEVEL, PartitionsRecord
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.native.library import function
@@ -248,11 +248,11 @@ def test_what_c_may_not_read_is_refused():
 
 def test_records_have_the_layout_that_c_expects():
     layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(17, np.int64)
+    sizes = np.zeros(16, np.int64)
     layout(sizes.ctypes.data)
     records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord, CoverRecord)]
     first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
-    of_graphs = LEVEL.itemsize, ctypes.sizeof(PartitionsRecord), ctypes.sizeof(CutAnnealRecord)
+    of_graphs = ctypes.sizeof(KeptLinksRecord), ctypes.sizeof(CutAnnealRecord)
     others = [ctypes.sizeof(record) for record in (GreedyRecord, DescentRecord, ColumnsRecord, DualsRecord)]
     assert sizes.tolist() == [*first, *records, *of_graphs, *others]
 

@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["annealed_cut"]
+__all__ = ["Cooling", "Network", "annealed_cut"]
 
 HOT, COLD, OVERSIZE = 3.0, 0.15, 2.0
-"""Temperatures and the price of a robot too many in a group, in links."""
+"""Temperatures and the price of a robot too many in a group, in links; a robot's mean number of links and half as many
+again, if that is more: where robots have many links, groups else stay too large."""
 MOVES, MOVES_AT_ONCE = 1_500, 20_000
 """Moves for each robot in a cooling, and moves between two looks at the clock. At 50 to 200 robots more find no better
 cut."""
@@ -62,7 +63,7 @@ def _cut_below(threat: Threat, size: int, budget: Budget, ignoring: Collection[i
     """A cut within the budget that leaves groups of at most ``size`` robots that count, if a few coolings find one."""
     n_robots = threat.graph.n_robots
     counts = np.array([i not in ignoring for i in range(n_robots)], dtype=np.int64)
-    network, rng, fewest = _Network.of(threat), np.random.default_rng(size), -(-int(counts.sum()) // size)
+    network, rng, fewest = Network.of(threat), np.random.default_rng(size), -(-int(counts.sum()) // size)
     for count in dict.fromkeys(fewest + round(share * fewest) for share in SPARE_GROUPS):
         cooling = Cooling(network, counts, rng.integers(0, count, n_robots), count, size, rng)
         within, moves = threat.alpha_c + 1, MOVES * n_robots
@@ -76,7 +77,7 @@ def _cut_below(threat: Threat, size: int, budget: Budget, ignoring: Collection[i
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Network:
+class Network:
     """``start`` : (N + 1,) of each robot's arcs; ``robot``, ``price`` : (2 E,) an arc's other end, and its cut's."""
 
     start: IntArray
@@ -84,16 +85,20 @@ class _Network:
     price: IntArray
 
     @classmethod
-    def of(cls, threat: Threat) -> _Network:
+    def of(cls, threat: Threat) -> Network:
         """A protected link costs more than all links."""
         links = sorted(threat.graph.links)
-        arcs = np.array([*links, *(link[::-1] for link in links)], dtype=np.int64).reshape(-1, 2)
-        price = np.array(
-            [len(links) + 1 if link in threat.protected_links else 1 for link in links] * 2, dtype=np.int64
-        )
+        price = [len(links) + 1 if link in threat.protected_links else 1 for link in links]
+        ends = np.array(links, dtype=np.int64).reshape(-1, 2)
+        return cls.weighted(ends, np.array(price, dtype=np.int64), threat.graph.n_robots)
+
+    @classmethod
+    def weighted(cls, ends: IntArray, price: IntArray, n_robots: int) -> Network:
+        """``ends`` : (E, 2); ``price`` : (E,) of cutting each."""
+        arcs = np.concatenate([ends, ends[:, ::-1]])
         order = np.lexsort(arcs.T[::-1])
-        start = np.searchsorted(arcs[order, 0], np.arange(threat.graph.n_robots + 1))
-        return cls(start, arcs[order, 1].copy(), price[order])
+        start = np.searchsorted(arcs[order, 0], np.arange(n_robots + 1))
+        return cls(start, arcs[order, 1].copy(), np.tile(price, 2)[order])
 
 
 class CutAnnealRecord(Structure):
@@ -110,13 +115,23 @@ class CutAnnealRecord(Structure):
 class Cooling:
     """One cooling from the labels ``group`` (N,) below ``count``; ``best`` : (N,) those of the fewest links cut.
 
-    ``counts`` : (N,) 1, or 0 for robots that do not count for a group's ``size``
+    ``counts`` : (N,) sizes of robots, 0 for those that do not count for a group's ``size``
+    ``unit`` : weight of a typical link; temperatures and the price of a robot too many are in it
+    ``fewest`` : weight that ``best`` cuts, once there is one
 
     Raises ``InputError`` : an array has another type or shape, or a label is none.
     """
 
     def __init__(  # noqa: PLR0917
-        self, network: _Network, counts: IntArray, group: IntArray, count: int, size: int, rng: np.random.Generator
+        self,
+        network: Network,
+        counts: IntArray,
+        group: IntArray,
+        count: int,
+        size: int,
+        rng: np.random.Generator,
+        *,
+        unit: float = 1.0,
     ) -> None:
         n_robots, arcs = len(network.start) - 1, len(network.robot)
         shapes = {"start": n_robots + 1, "robot": arcs, "price": arcs}
@@ -131,9 +146,14 @@ class Cooling:
         self._rng, bits = rng, rng.bit_generator.ctypes
         source = bits.state_address, cast(bits.next_double, c_void_p)
         where = map(address, self._arrays)
-        self._record = CutAnnealRecord(n_robots, count, size, *where, HOT, COLD, OVERSIZE, *source)
+        oversize = (
+            max(OVERSIZE, 1.5 * arcs / n_robots) * unit * max(int((counts > 0).sum()), 1) / max(int(counts.sum()), 1)
+        )
+        self._record = CutAnnealRecord(n_robots, count, size, *where, HOT * unit, COLD * unit, oversize, *source)
+        self.fewest = np.iinfo(np.int64).max
 
     def run(self, first: int, last: int, moves: int, fewest: int) -> int:
         """Go through some of the ``moves``; the fewest links cut so far, less than ``fewest``, or that."""
         call = function("anneal_cut", c_int64, POINTER(CutAnnealRecord), *[c_int64] * 4)
-        return int(call(byref(self._record), first, last, moves, fewest))
+        self.fewest = int(call(byref(self._record), first, last, moves, fewest))
+        return self.fewest

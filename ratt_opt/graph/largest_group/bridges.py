@@ -153,6 +153,6 @@ def by_bridges(threat: Threat, budget: Budget) -> LargestGroup:
                         break
                     cut = without | frozenset(cuts)
                     smallest = max(map(len, threat.graph.groups(cut)))
-    except OutOfBudget:
-        return split_result(threat, cut, counting_bound(threat), "enumeration", COUNTED)
+    except OutOfBudget as spent:
+        return split_result(threat, cut, counting_bound(threat), "enumeration", COUNTED, stop=spent.stop)
     return split_result(threat, cut, smallest, "enumeration", "no choice of bridges and other links leaves less")

@@ -8,6 +8,7 @@ from math import comb
 from typing import TYPE_CHECKING
 
 from ratt_opt._values import counted
+from ratt_opt.budget import Stop
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.survivor_sizes import caa, links_within
@@ -35,8 +36,9 @@ __all__ = [
 class LargestGroup:
     """Claim: ``lower <= n_max``, and ``cut`` leaves a largest group of ``upper`` robots, so ``n_max <= upper``.
 
-    ``upper`` is recomputed on the graph. ``reason`` says why ``lower`` holds. ``claimed_lower`` is what a
-    solver claims beyond that and nothing has checked (equal to ``lower`` if no solver was asked).
+    ``upper`` is recomputed on the graph. ``reason`` says why ``lower`` holds, and which limit was met, ``stop`` why the
+    search ended. ``claimed_lower`` is what the integer program of ``method="milp"`` claims beyond ``lower``; nothing
+    has checked it, and nothing else follows from it (equal to ``lower`` for all other methods).
     """
 
     lower: int
@@ -45,18 +47,17 @@ class LargestGroup:
     method: str
     reason: str
     claimed_lower: int
+    stop: Stop
 
     def __repr__(self) -> str:
         cut = f"{counted(len(self.cut), 'link')} cut"
-        return f"LargestGroup([{self.lower}, {self.upper}], {cut}, {self.method!r}: {self.reason})"
+        claim = f", {self.claimed_lower} claimed" if self.claimed_lower > self.lower else ""
+        return f"LargestGroup([{self.lower}, {self.upper}]{claim}, {cut}, {self.method!r}: {self.reason})"
 
     @property
     def n_max(self) -> int | None:
-        """The smallest possible size, if it is known: proved (``is_exact``), or by a solver's claim.
-
-        ``None`` if it is only known to be from ``lower`` to ``upper``.
-        """
-        return self.upper if self.claimed_lower == self.upper else None
+        """The smallest possible size, if it is proved; ``None`` if only ``lower`` and ``upper`` are known."""
+        return self.upper if self.is_exact else None
 
     @property
     def is_exact(self) -> bool:
@@ -70,14 +71,32 @@ def largest_left(graph: CommunicationGraph, cut: Iterable[Link], ignoring: Colle
 
 
 def split_result(
-    threat: Threat, cut: frozenset[Link], lower: int, method: str, reason: str, *, claimed_lower: int | None = None
+    threat: Threat,
+    cut: frozenset[Link],
+    lower: int,
+    method: str,
+    reason: str,
+    *,
+    claimed_lower: int | None = None,
+    stop: Stop | None = None,
 ) -> LargestGroup:
-    """The result of a cut and a lower bound, after checking that the cut is allowed."""
+    """The result of a cut and a lower bound, after checking that the cut is allowed.
+
+    ``stop`` : why the search ended while the ends were apart; by default a heuristic did
+    """
     assert len(cut) <= threat.alpha_c, "a cut is within its budget"
     assert not cut & threat.protected_links, "a cut spares protected links"
     upper = largest_left(threat.graph, cut)
     claimed = lower if claimed_lower is None else max(lower, min(claimed_lower, upper))
-    return LargestGroup(lower=lower, upper=upper, cut=cut, method=method, reason=reason, claimed_lower=claimed)
+    return LargestGroup(
+        lower=lower,
+        upper=upper,
+        cut=cut,
+        method=method,
+        reason=reason,
+        claimed_lower=claimed,
+        stop=Stop.CLOSED if lower == upper else stop or Stop.HEURISTIC,
+    )
 
 
 COUNTED = "the links left, and the protected ones, do not fit into smaller groups"

@@ -55,7 +55,7 @@ def by_integer_program(threat: Threat, budget: Budget, known: LargestGroup | Non
             best, claimed = _solve(model, best, bound, budget)
     except OutOfBudget:
         pass  # what is known so far
-    return split_result(threat, best, bound, "milp", reason, claimed_lower=claimed)
+    return split_result(threat, best, bound, "milp", reason, claimed_lower=claimed, stop=budget.stop())
 
 
 class _Model:

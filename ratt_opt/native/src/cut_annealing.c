@@ -19,10 +19,11 @@ static int64_t links_cut(const CutAnneal *a) {
     return cut / 2;
 }
 
+static int64_t over_size(const CutAnneal *a, int64_t size) { return size > a->most ? size - a->most : 0; }
+
 static int64_t robots_too_many(const CutAnneal *a) {
     int64_t over = 0;
-    for (int64_t g = 0; g < a->groups; g++)
-        if (a->sizes[g] > a->most) over += a->sizes[g] - a->most;
+    for (int64_t g = 0; g < a->groups; g++) over += over_size(a, a->sizes[g]);
     return over;
 }
 
@@ -46,7 +47,8 @@ EXPORTED int64_t anneal_cut(const CutAnneal *a, int64_t first, int64_t last, int
         int64_t to = is_next ? a->group[a->robot[a->start[i] + below(a, degree)]] : below(a, a->groups);
         if (home == to) continue;
         int64_t more = more_links(a, i, home, to);
-        int64_t excess = a->counts[i] * ((a->sizes[to] >= a->most) - (a->sizes[home] > a->most));
+        int64_t excess = over_size(a, a->sizes[to] + a->counts[i]) - over_size(a, a->sizes[to]);
+        excess += over_size(a, a->sizes[home] - a->counts[i]) - over_size(a, a->sizes[home]);
         double worse = (double)more + a->oversize * (double)excess;
         if (worse > 0.0) {
             double temperature = a->hot * pow(a->cold / a->hot, (double)move / (double)moves);

@@ -18,13 +18,12 @@ EXPORTED void layout(int64_t *sizes) {
     sizes[7] = sizeof(DisjointSets);
     sizes[8] = sizeof(GroupTree);
     sizes[9] = sizeof(Cover);
-    sizes[10] = sizeof(PartitionLevel);
-    sizes[11] = sizeof(Partitions);
-    sizes[12] = sizeof(CutAnneal);
-    sizes[13] = sizeof(Greedy);
-    sizes[14] = sizeof(Descent);
-    sizes[15] = sizeof(Columns);
-    sizes[16] = sizeof(Duals);
+    sizes[10] = sizeof(KeptLinks);
+    sizes[11] = sizeof(CutAnneal);
+    sizes[12] = sizeof(Greedy);
+    sizes[13] = sizeof(Descent);
+    sizes[14] = sizeof(Columns);
+    sizes[15] = sizeof(Duals);
 }
 
 /* Those of the searches for best plans. */

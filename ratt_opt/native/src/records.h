@@ -19,23 +19,6 @@ typedef struct {
     int64_t cut;
 } Branch;
 
-/* A level of the search of partitions. */
-typedef struct {
-    uint64_t left;                    /* robots in no group so far */
-    int64_t cut;                      /* by the groups so far */
-    int64_t next, group;              /* the group tried next, and the one that is chosen */
-} PartitionLevel;
-
-/* Partitions of the team into listed groups, within the budget of links. */
-typedef struct {
-    int64_t most_cut;
-    const uint64_t *groups;           /* sorted by lowest robot */
-    const int64_t *starts;            /* (robots + 1) the first group of each lowest robot */
-    const uint64_t *neighbours;       /* (robots) */
-    PartitionLevel *levels;           /* (robots + 1) */
-    int64_t depth, nodes;             /* depth: -1 at the end; nodes: groups tried */
-} Partitions;
-
 /* A level of the search of covers. */
 typedef struct {
     int64_t room[3];                   /* reduced cost, blinded robots and links that are left */
@@ -90,13 +73,29 @@ typedef struct {
 typedef struct {
     int64_t robots, groups, most;
     const int64_t *start, *robot;
-    const int64_t *price, *counts;     /* (arcs) of a cut; (robots) 1, or 0 for those that no size counts */
+    const int64_t *price, *counts;     /* (arcs) of a cut; (robots) sizes, 0 for those that do not count */
     int64_t *group, *best;             /* (robots) labels of groups; the same where the fewest links were cut */
-    int64_t *sizes;                    /* (groups) robots that count */
+    int64_t *sizes;                    /* (groups) sums of `counts` */
     double hot, cold, oversize;        /* temperatures at the first and after the last move; the price of a robot too many */
     void *random;                      /* NumPy's source of random bits, and its function for doubles in [0, 1) */
     double (*uniform)(void *random);
 } CutAnneal;
+
+/* Groups that keep more link weight than their robots' prices. */
+typedef struct {
+    int64_t robots, links;
+    const int64_t *ends;               /* (links, 2) */
+    const int64_t *start, *arc;        /* (robots + 1) of each robot's links in `arc` (2 links) */
+    const int64_t *weight;             /* (links) in units of prices */
+    const int64_t *price, *size;       /* (robots) */
+    int64_t room, threshold, listing;  /* sizes and values of groups that are found; listing: all of them, each once */
+    int64_t most_found, found;
+    uint8_t *groups;                   /* (most_found, robots) */
+    int64_t *values;                   /* (most_found) */
+    int64_t most_length, length;       /* of `tree`, the proof that there is no such group; 0: none is written */
+    int64_t *tree;
+    int64_t nodes;
+} KeptLinks;
 
 /* What the next choices of the greedy algorithm add; planar matrices [[a, b], [b, c]] as rows of a, of b and of c, so that
    targets lie side by side. Rows have `width` places: behind the targets come ones that add nothing (trace, log-det). */

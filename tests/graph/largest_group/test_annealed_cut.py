@@ -10,7 +10,7 @@ from ratt_opt import InputError
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.largest_group import annealed_cut as module
-from ratt_opt.graph.largest_group.annealed_cut import Cooling, annealed_cut
+from ratt_opt.graph.largest_group.annealed_cut import Cooling, Network, annealed_cut
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.threat import Threat
 
@@ -41,7 +41,7 @@ def links_cut(links, prices, group):
     return sum(price for (i, j), price in zip(links, prices, strict=True) if group[i] != group[j])
 
 
-def plainly_cooled(n_robots, links, prices, counts, group, labels, size, rng, moves):  # noqa: PLR0917
+def plainly_cooled(n_robots, links, prices, counts, group, labels, size, rng, moves, oversize):  # noqa: PLR0917
     """Labels after all moves, fewest links cut (of 10 to begin with) and the labels then."""
 
     def too_many():
@@ -58,9 +58,9 @@ def plainly_cooled(n_robots, links, prices, counts, group, labels, size, rng, mo
             to = int(rng.random() * labels)
         if to == group[i]:
             continue
-        before, home = links_cut(links, prices, group) + module.OVERSIZE * too_many(), group[i]
+        before, home = links_cut(links, prices, group) + oversize * too_many(), group[i]
         group[i] = to
-        worse = links_cut(links, prices, group) + module.OVERSIZE * too_many() - before
+        worse = links_cut(links, prices, group) + oversize * too_many() - before
         heat = module.HOT * (module.COLD / module.HOT) ** (move / moves)
         if worse > 0 and rng.random() >= np.exp(-worse / heat):
             group[i] = home
@@ -79,10 +79,11 @@ def test_a_cooling_makes_the_moves_of_the_definition(seed):
     threat = Threat(CommunicationGraph(n_robots, frozenset(links)), 0, 0, protected_links=protected)
     prices = [len(links) + 1 if link in protected else 1 for link in links]
     counts, group = rng.integers(0, 2, n_robots), rng.integers(0, labels, n_robots)
+    oversize = max(module.OVERSIZE, 1.5 * 2 * len(links) / n_robots)
     expected = plainly_cooled(
-        n_robots, links, prices, counts, group.tolist(), labels, size, np.random.default_rng(seed), 200
+        n_robots, links, prices, counts, group.tolist(), labels, size, np.random.default_rng(seed), 200, oversize
     )
-    cooling = Cooling(module._Network.of(threat), counts, group, labels, size, np.random.default_rng(seed))
+    cooling = Cooling(Network.of(threat), counts, group, labels, size, np.random.default_rng(seed))
     fewest = 10
     for first, last in ([(0, 200)], [(0, 1), (1, 50), (50, 50), (50, 200)])[seed % 2]:
         fewest = cooling.run(first, last, 200, fewest)
@@ -91,7 +92,7 @@ def test_a_cooling_makes_the_moves_of_the_definition(seed):
 
 def test_what_c_may_not_read_is_refused():
     threat = Threat(CommunicationGraph(3, frozenset({(0, 1), (1, 2)})), 0, 1)
-    network, counts, group = module._Network.of(threat), np.ones(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
+    network, counts, group = Network.of(threat), np.ones(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
     rng, locked = np.random.default_rng(0), np.zeros(3, dtype=np.int64)
     locked.setflags(write=False)
     Cooling(network, counts, group, 2, 1, rng)

@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ratt_opt as ro
+from ratt_opt.attack.edge_cuts.smallest import bound_soon
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.largest_group.smallest import bound_soon, by_separable_groups
 from ratt_opt.graph.threat import Threat
 from tests.strategies import SEEDED, random_graph, random_problem
 
@@ -35,7 +35,8 @@ def check(found, graph, alpha_c, protected=()):
     rest.remove_edges_from(found.cut)
     assert rest.number_of_edges() == graph.number_of_edges() - len(found.cut)
     assert max(map(len, nx.connected_components(rest))) == found.upper
-    assert found.n_max == (found.upper if found.claimed_lower == found.upper else None)
+    assert found.n_max == (found.upper if found.lower == found.upper else None)
+    assert (found.stop is ro.Stop.CLOSED) == found.is_exact
     assert found.lower <= found.claimed_lower <= found.upper
     assert found.reason
 
@@ -50,10 +51,10 @@ def test_any_graph_against_all_edge_subsets(seed):
     protected = [link for link in links if rng.random() < 0.15]
     alpha_c = int(rng.integers(0, len(links) + 1))
     expected = by_definition(graph, alpha_c, protected)
-    for method in ("enumeration", "milp"):
+    for method in ("auto", "enumeration", "milp"):
         found = ro.smallest_largest_group(graph, alpha_c, method=method, protected_links=protected)
         check(found, graph, alpha_c, protected)
-        assert found.n_max == expected
+        assert found.upper == expected
         assert found.claimed_lower == expected
     found = ro.smallest_largest_group(graph, alpha_c, method="counting", protected_links=protected)
     check(found, graph, alpha_c, protected)
@@ -69,7 +70,7 @@ def test_all_ways_agree_on_complete_graphs(n_robots):
         for method in methods:
             found = ro.smallest_largest_group(graph, alpha_c, method=method)
             check(found, graph, alpha_c)
-            sizes.add(found.n_max)
+            sizes.add(found.upper)
             assert method == "milp" or found.is_exact
         assert sizes == {ro.caa(n_robots, alpha_c).n_max}
 
@@ -83,43 +84,41 @@ def test_caa_agrees_with_integer_partitions(n_robots):
         assert found.n_max == ro.caa(n_robots, alpha_c).n_max
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_enumeration_and_milp_agree_on_larger_graphs(seed):
+@pytest.mark.parametrize("seed", range(8))
+def test_prices_enumeration_and_the_integer_program_agree(seed):
     rng = np.random.default_rng(seed)
     graph = nx.gnp_random_graph(11, 0.35, seed=seed)
     alpha_c = int(rng.integers(0, graph.number_of_edges() // 2 + 1))
-    exact = ro.smallest_largest_group(graph, alpha_c, method="enumeration")
-    found = ro.smallest_largest_group(graph, alpha_c, method="milp")
-    check(found, graph, alpha_c)
-    assert found.n_max == exact.n_max
+    links = sorted(tuple(sorted(link)) for link in graph.edges)
+    protected = [link for link in links if rng.random() < 0.1]
+    found = {
+        method: ro.smallest_largest_group(graph, alpha_c, method=method, protected_links=protected)
+        for method in ("auto", "enumeration", "milp")
+    }
+    for one in found.values():
+        check(one, graph, alpha_c, protected)
+    assert len({one.upper for one in found.values()}) == 1
+    assert found["auto"].is_exact
+    assert found["enumeration"].is_exact
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_enumeration_by_groups_agrees_with_both_others(seed):
-    """Where all subsets still fit, and beyond, against the integer program."""
+@pytest.mark.parametrize("seed", range(4))
+def test_beyond_all_subsets_the_integer_program_agrees(seed):
     rng = np.random.default_rng(seed)
-    threat = random_problem(rng, 9, kind="logdet", controls=1).threat
-    graph = nx.Graph(sorted(threat.graph.links))
-    graph.add_nodes_from(range(9))
-    found = by_separable_groups(threat, Budget())
-    check(found, graph, threat.alpha_c, threat.protected_links)
-    exact = ro.smallest_largest_group(
-        graph, threat.alpha_c, method="enumeration", protected_links=threat.protected_links
-    )
-    assert (found.n_max, found.is_exact) == (exact.n_max, True)
-    larger = nx.gnp_random_graph(18, 0.2, seed=seed)
+    graph = nx.gnp_random_graph(18, 0.2, seed=seed)
     alpha_c = int(rng.integers(0, 9))
-    found = ro.smallest_largest_group(larger, alpha_c, method="enumeration")
-    check(found, larger, alpha_c)
+    found = ro.smallest_largest_group(graph, alpha_c)
+    check(found, graph, alpha_c)
     assert found.is_exact
-    assert found.n_max == ro.smallest_largest_group(larger, alpha_c, method="milp").n_max
+    claimed = ro.smallest_largest_group(graph, alpha_c, method="milp")
+    assert found.upper == claimed.upper == claimed.claimed_lower
 
 
 @pytest.mark.parametrize("max_nodes", [0, 1, 10, 100, 1000])
-def test_enumeration_within_a_node_budget_returns_a_bracket(max_nodes):
+def test_a_node_budget_returns_a_bracket(max_nodes):
     graph = nx.gnp_random_graph(22, 0.2, seed=3)
-    exact = ro.smallest_largest_group(graph, 12, method="enumeration").n_max
-    found = ro.smallest_largest_group(graph, 12, method="enumeration", max_nodes=max_nodes)
+    exact = ro.smallest_largest_group(graph, 12).n_max
+    found = ro.smallest_largest_group(graph, 12, max_nodes=max_nodes)
     check(found, graph, 12)
     assert found.lower <= exact <= found.upper
 
@@ -171,7 +170,7 @@ def test_n_max_is_none_where_nothing_says_what_it_is():
     assert len(repr(ro.smallest_largest_group(nx.complete_graph(30), 200))) < 200
 
 
-@pytest.mark.parametrize("method", ["auto", "enumeration", "milp"])
+@pytest.mark.parametrize("method", ["auto", "milp"])
 def test_an_outer_budget_counts_too(method):
     graph = nx.gnp_random_graph(25, 0.2, seed=3)
     outer = Budget()
@@ -192,12 +191,12 @@ def test_ratt_uses_the_exact_size_on_any_graph(seed):
     assert len(planned.bait) == min(5, problem.alpha_s + expected)
 
 
-@pytest.mark.parametrize("method", ["auto", "enumeration", "milp", "spreading", "counting"])
+@pytest.mark.parametrize("method", ["auto", "milp", "spreading", "counting"])
 def test_time_may_end_at_any_look_at_the_clock(method, monkeypatch):
     """Also between the look that lets a search go on and its next one: once that ended in an exception of its own."""
     size, density, alpha_c = (16, 0.25, 8) if method == "milp" else (22, 0.2, 12)
     graph = nx.gnp_random_graph(size, density, seed=3)
-    exact = ro.smallest_largest_group(graph, alpha_c, method="enumeration").n_max
+    exact = ro.smallest_largest_group(graph, alpha_c).n_max
     for looks in [*range(40), *range(40, 400, 23)]:
         clock = iter(range(10**9))
         monkeypatch.setattr("ratt_opt.budget.monotonic", lambda clock=clock: float(next(clock)))
@@ -222,9 +221,9 @@ def test_what_ratt_takes_is_a_bound_at_any_moment(n_robots, seed, density):
     cut = ro.smallest_largest_group(graph, threat.alpha_c, method="spreading", protected_links=protected)
     for seconds in (0.0, None):
         assert bound_soon(threat, Budget(seconds)) <= cut.upper
-    found = by_separable_groups(threat, Budget())
-    if found is not None:
-        assert bound_soon(threat, Budget()) <= found.lower
+    exact = ro.smallest_largest_group(graph, threat.alpha_c, protected_links=protected)
+    assert exact.is_exact
+    assert bound_soon(threat, Budget()) <= exact.lower
 
 
 @pytest.mark.parametrize(("n_robots", "cut"), [(14, 0.3), (36, 0.3), (36, 0.5), (60, 0.15), (100, 0.3)])
@@ -234,7 +233,7 @@ def test_ratt_asks_no_integer_program_and_depends_on_nothing_before(n_robots, cu
     def asked(*_):
         raise AssertionError
 
-    monkeypatch.setattr("ratt_opt.graph.largest_group.smallest.by_integer_program", asked)
+    monkeypatch.setattr("ratt_opt.attack.edge_cuts.smallest.by_integer_program", asked)
     problem = ro.network_scenario("hubs", n_robots, 3, alpha_s=0.2, alpha_c=cut, seed=1).problem()
     first = ro.ratt(problem)
     found = ro.smallest_largest_group(problem.communication, problem.alpha_c, method="spreading", time_limit=1.0)
