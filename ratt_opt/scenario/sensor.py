@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field
 
+from ratt_opt.errors import InputError
 from ratt_opt.scenario.record import NonNegative, Positive, Record, plain
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
 
-__all__ = ["Sensor", "bearing_of", "jacobian", "measure", "wrap_angle"]
+__all__ = ["Sensor", "bearing_of", "jacobian", "measure", "variances_of", "wrap_angle"]
 
 
 class Sensor(Record):
@@ -41,7 +42,7 @@ class Sensor(Record):
     field_of_view: Annotated[float, Field(strict=True, gt=0, le=2 * math.pi), BeforeValidator(plain)] | None = None
 
     def noise_variances(self, distance: FloatArray, bearing: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Variances of the range [m^2] and bearing [rad^2] errors; same shape as the arguments."""
+        """Variances of the range [m^2] and bearing [rad^2] errors: two arrays of the same shape as the arguments."""
         of_range = self.range_noise + self.range_noise_slope * distance
         of_bearing = self.bearing_noise + self.bearing_noise_slope * np.abs(bearing)
         return (of_range, of_bearing) if self.law == "variance" else (of_range**2, of_bearing**2)
@@ -69,7 +70,7 @@ class Sensor(Record):
         """
         measured = measure(poses[:, None], targets[None])
         distance, bearing = measured[..., 0], measured[..., 1]
-        variance_r, variance_b = self.noise_variances(distance, bearing)
+        variance_r, variance_b = variances_of(self, distance, bearing)
         along, across = np.moveaxis(jacobian(poses[:, None], targets[None]), -2, 0)
         seen = self.sees(distance, bearing)
         weight_r, weight_b = np.where(seen, 1 / variance_r, 0.0), np.where(seen, 1 / variance_b, 0.0)
@@ -77,6 +78,25 @@ class Sensor(Record):
             weight_r[..., None, None] * along[..., :, None] * along[..., None, :]
             + weight_b[..., None, None] * across[..., :, None] * across[..., None, :]
         )
+
+
+def variances_of(sensor: Sensor, distance: FloatArray, bearing: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a sensor's two variances, each of the shape of ``distance``; a class of one's own may return anything.
+
+    InputError : they are not two, or of another shape.
+    """
+    found, shape = sensor.noise_variances(distance, bearing), np.shape(distance)
+    name = f"noise_variances of {type(sensor).__name__}"
+    rule = f"must be two arrays of shape {shape}, of range [m^2] and bearing [rad^2]"
+    given = f"one array of shape {found.shape}" if isinstance(found, np.ndarray) else type(found).__name__
+    is_array = isinstance(found, np.ndarray) and found.shape == (2, *shape)
+    if not is_array and not (isinstance(found, (tuple, list)) and len(found) == 2):
+        raise InputError(name, rule, given)
+    try:
+        of_range, of_bearing = (np.broadcast_to(np.asarray(part, dtype=np.float64), shape) for part in found)
+    except (TypeError, ValueError):
+        raise InputError(name, rule, [np.shape(part) for part in found]) from None
+    return of_range, of_bearing
 
 
 def wrap_angle(angle: FloatArray) -> FloatArray:

@@ -286,3 +286,42 @@ def test_an_installed_package_offers_sensors_to_files_and_commands(tmp_path: Pat
     assert (
         "must be offered by a package that can be imported; got lost (No module named 'no_such_module')" in lost.stderr
     )
+
+
+@pytest.mark.parametrize(
+    "returned",
+    [
+        lambda given: given[0],
+        sum,
+        lambda given: (*given, given[0]),
+        lambda _: 1.0,
+        lambda _: None,
+        lambda given: (given[0], given[1][..., :1, None, None]),
+        lambda given: ("a", given[0]),
+    ],
+)
+@pytest.mark.parametrize("n_robots", [1, 2, 3])
+def test_variances_that_are_not_two_are_refused_in_one_line(returned, n_robots):
+    class Own(ro.Sensor):
+        def noise_variances(self, distance, bearing):
+            return returned((distance, bearing))
+
+    team = ro.random_scenario(n_robots, 2, alpha_s=0, alpha_c=0, seed=0)
+    rule = r"noise_variances of Own must be two arrays of shape \(.*\), of range \[m\^2\] and bearing \[rad\^2\]; got"
+    with pytest.raises(ro.InputError, match=rule):
+        team.replace(sensor=Own()).problem()
+
+
+def test_two_variances_may_be_one_array_or_numbers():
+    class Stacked(ro.Sensor):
+        def noise_variances(self, distance, bearing):
+            return np.stack(super().noise_variances(distance, bearing))
+
+    class Constant(ro.Sensor):
+        def noise_variances(self, *_):
+            return 2.0, 0.25
+
+    team = ro.random_scenario(3, 2, alpha_s=0, alpha_c=0, seed=0)
+    same = team.replace(sensor=Stacked()).problem().information_objective.information
+    assert np.array_equal(same, team.problem().information_objective.information)
+    assert team.replace(sensor=Constant()).problem().information_objective.information.any()

@@ -10,7 +10,7 @@ import numpy as np
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
 from ratt_opt.scenario.own_sensors import tells_itself
-from ratt_opt.scenario.sensor import Sensor, jacobian, measure
+from ratt_opt.scenario.sensor import Sensor, jacobian, measure, variances_of
 from ratt_opt.scenario.sensors.model import SensorModel
 from ratt_opt.scenario.sensors.own_information import stated_information, stated_weights
 
@@ -59,7 +59,7 @@ class RangeBearing(ByValue, SensorModel):
     def noise(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., 2) [m^2], [rad^2]."""
         measured = measure(poses, points)
-        return np.stack(self.sensor.noise_variances(measured[..., 0], measured[..., 1]), axis=-1)
+        return np.stack(variances_of(self.sensor, measured[..., 0], measured[..., 1]), axis=-1)
 
     def weights(
         self,
