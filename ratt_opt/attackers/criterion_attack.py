@@ -14,9 +14,11 @@ from ratt_opt.attack.size_vectors.possible_sizes import LARGEST, possible_sizes_
 from ratt_opt.attack.size_vectors.search import SizeVectorSearch
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.threshold_search import ThresholdSearch
+from ratt_opt.attackers.every_attack import EveryAttack
 from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import OutOfBudget
+from ratt_opt.graph.few_cuts import attacks_are_few
 from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 
 if TYPE_CHECKING:
@@ -71,6 +73,12 @@ class CriterionAttack(TeamAttack):
         """At most 12 robots."""
         return self.task.problem.n_robots <= SMALL
 
+    def has_few_attacks(self) -> bool:
+        """Links not all alike; at most 20,000 attacks, or more than 24 robots and as many as soon are tried."""
+        if self._threat.links_alike or attacks_are_few(self._threat):
+            return super().has_few_attacks()
+        return not (self._has_table or self._is_brief) and EveryAttack(self.task).is_soon()
+
     def is_planar_and_complete(self) -> bool:
         """Planar targets, complete graph, no protected links."""
         return self._team is not None and self._threat.links_alike and self._team.is_planar
@@ -122,6 +130,10 @@ class CriterionAttack(TeamAttack):
         except (OutOfBudget, KeyboardInterrupt):
             self.first_bound()
             raise
+
+    def every_attack(self) -> Stop:
+        """Every attack, valued in batches."""
+        return EveryAttack(self.task).run()
 
     def first_bound(self) -> None:
         """What single robots and the forced size prove at once."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ratt_opt.attack.staging import Stage
 from ratt_opt.attackers.criterion_attack import CriterionAttack as Criterion
+from ratt_opt.attackers.every_attack import PARAMS as EVERY_ATTACK
 from ratt_opt.attackers.team_attack import TeamAttack as Team
 
 __all__ = ["CRITERION", "USER_FUNCTION"]
@@ -50,7 +51,7 @@ USER_FUNCTION: tuple[Stage[Team], ...] = (
 CRITERION: tuple[Stage[Criterion], ...] = (
     Stage("thresholds", Criterion.thresholds_of_few, Criterion.is_small),
     Stage("single robots", Criterion.first_bound),
-    Stage("every attack", Criterion.every_attack, Criterion.has_few_attacks),
+    Stage("every attack", Criterion.every_attack, Criterion.has_few_attacks, EVERY_ATTACK.most),
     Stage("size vectors", Criterion.size_vectors, Criterion.is_planar_and_complete),
     Stage("size vectors", Criterion.size_vectors, Criterion.is_spatial_and_complete, SPATIAL_SHARE),
     Stage("thresholds", Criterion.thresholds, Criterion.is_tabulated),

@@ -1,0 +1,131 @@
+"""All attacks on a plan under a criterion, valued in batches: where links and cuts are few, the quickest exact way.
+
+How many are few follows from the time that is left: what a batch and a partition take is measured first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations, islice
+from math import comb
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.budget import Stop
+from ratt_opt.graph.few_cuts import partitions_by_few_cuts
+from ratt_opt.problem import Attack
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.task import AttackTask
+    from ratt_opt.graph.threat import Threat
+
+__all__ = ["PARAMS", "EveryAttack"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EveryAttackParams:
+    """When all attacks are tried.
+
+    ``share`` : of the time left that it is expected to take at most [1]; a larger one closes more attacks by it, and
+    leaves less time for other stages if it is misjudged. ``most`` : after which it is given up [1]
+    ``seconds`` : expected at most without a limit [s]; ``batch`` : blinded sets valued at once, megabytes of matrices
+    """
+
+    share: float = 0.25
+    most: float = 0.4
+    seconds: float = 5.0
+    batch: int = 2048
+
+
+PARAMS = EveryAttackParams()
+
+
+class EveryAttack:
+    """Tries every attack that uses the whole budgets; relies on a non-decreasing objective, which criteria are."""
+
+    def __init__(self, task: AttackTask) -> None:
+        self._task, self._threat = task, task.problem.threat
+        self._objective = task.problem.information_objective
+        information = self._objective.information[task.values.plan]
+        self._rows: FloatArray = np.ascontiguousarray(information.reshape(len(information), -1))
+        self._free = sorted(set(range(len(information))) - self._threat.protected_robots)
+
+    @property
+    def seconds(self) -> float:
+        """About how long trying all takes: every partition, and for each the largest group under all blinded sets.
+
+        Most attacks leave more than the one in hand already there; the other groups are valued for the rest.
+        """
+        threat = self._threat
+        cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
+        blinded = comb(len(self._free), threat.n_blinded)
+        began = perf_counter()
+        threat.graph.groups(tuple(islice(sorted(threat.graph.links), threat.n_cut)))
+        partition = perf_counter() - began
+        rows = min(blinded, PARAMS.batch)
+        blind, value = np.zeros((rows, len(self._rows)), dtype=np.bool_), np.inf
+        for _ in range(2):  # the first call is slower
+            began = perf_counter()
+            self._values(tuple(range(len(self._rows))), blind)
+            value = min(value, (perf_counter() - began) / rows)
+        return float(cuts * (partition + blinded * value))
+
+    def is_soon(self) -> bool:
+        """Whether all are tried in a share of the time that is left."""
+        left = self._task.budget.seconds_left
+        most = PARAMS.seconds if np.isinf(left) else PARAMS.share * left
+        return not _are_many(self._threat, len(self._free)) and self.seconds <= most
+
+    def run(self) -> Stop:
+        """Find the worst attack of a plan.
+
+        Raises
+        ------
+        OutOfBudget : the time is up, or no node is left; the bracket keeps the worst attack tried.
+        """
+        bracket, budget = self._task.bracket, self._task.budget
+        for cut, groups in partitions_by_few_cuts(self._threat, budget):
+            ordered = [tuple(sorted(group)) for group in sorted(groups, key=len, reverse=True)]
+            for blinded in self._batches():
+                budget.check()
+                worst = self._worst(ordered, blinded, bracket.upper)
+                if worst is not None:  # valued anew: the bracket holds what an attack leaves if it is valued alone
+                    self._task.offer(Attack(frozenset(blinded[worst].tolist()), cut))
+        bracket.raise_lower(bracket.upper)
+        return Stop.CLOSED
+
+    def _batches(self) -> Iterator[IntArray]:
+        """(K, n_blinded) the sets of robots that may be blinded, some at a time."""
+        every = combinations(self._free, self._threat.n_blinded)
+        while some := list(islice(every, PARAMS.batch)):
+            yield np.array(some, dtype=np.int64).reshape(len(some), self._threat.n_blinded)
+
+    def _worst(self, groups: list[tuple[int, ...]], blinded: IntArray, upper: float) -> int | None:
+        """The blinded set that leaves least, if that is less than the attack in hand."""
+        blind = np.zeros((len(blinded), len(self._rows)), dtype=np.bool_)
+        blind[np.arange(len(blinded))[:, None], blinded] = True
+        left, most = np.arange(len(blinded)), np.full(len(blinded), -np.inf)
+        for group in groups:
+            most[left] = np.maximum(most[left], self._values(group, blind[left]))
+            left = left[most[left] < upper]
+            if not len(left):
+                return None
+        return int(left[most[left].argmin()])
+
+    def _values(self, group: tuple[int, ...], blind: BoolArray) -> FloatArray:
+        """(K,) what a group is worth where some of its robots are blinded. Sums, no differences: no digit is lost."""
+        members = list(group)
+        sums = (~blind[:, members]).astype(np.float64) @ self._rows[members]
+        prior = self._objective.prior_information
+        return self._objective.value(prior + sums.reshape(len(blind), *prior.shape))
+
+
+def _are_many(threat: Threat, n_free: int) -> bool:
+    """Whether there are more attacks than any machine tries: their number need not be computed with."""
+    cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
+    return cuts * comb(n_free, threat.n_blinded) > 10**12
