@@ -2,6 +2,7 @@
 
 It prints one line a finding, ``FILE:LINE: what to write instead``, and returns 1 if there are any. The word list is
 ``analysis/words.toml``. Besides, it counts words and conditions: a sentence has at most 40 words and two conditions.
+A docstring, private ones too, and a comment begin with an imperative or a noun phrase, in the families of ``PLAIN``.
 Without arguments it reads every page and notebook, and every Python file of the package and of the studies. In
 families that the engine issues rewrite it reads what users meet: messages, and the docstrings of public names.
 """
@@ -9,9 +10,11 @@ families that the engine issues rewrite it reads what users meet: messages, and 
 from __future__ import annotations
 
 import ast
+import io
 import json
 import re
 import sys
+import tokenize
 import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +23,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-__all__ = ["Finding", "Passage", "findings", "main", "passages", "read_words", "readable_files"]
+__all__ = ["Finding", "Passage", "findings", "fragments", "main", "passages", "read_words", "readable_files"]
 
 ROOT = Path(__file__).parents[1]
 LONGEST = 40
@@ -29,13 +32,25 @@ CONDITIONS = 2
 """Conditions of a sentence; one of them may be its subject's."""
 LATER = ("ratt_opt/attackers", "ratt_opt/certificates")
 """Families that the engine issues rewrite."""
+PLAIN = tuple(
+    [f"ratt_opt/{family}" for family in ("bounds", "cli", "coordinates", "interop", "studies", "worst_ratio")]
+    + ["ratt_audit", "analysis/prose.py"]
+)
+"""Families whose docstrings and comments begin as complete phrases. The others follow; then this list goes."""
 PAGES = ("README.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs", "paper")
 MADE = ("api", "gallery", "notebooks", "schemas")
 """Folders of docs that building the site writes."""
 CODE = ("ratt_opt", "ratt_audit", "analysis", "docs/examples")
 
 SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Zx(*\"\[])|(?<=[;:])\s+|\n\s*\n|\n\s*(?=- |[\w, ]+ : )")
-"""Where a sentence ends. A colon and a semicolon end one, too, and so does the field of a record or parameter."""
+"""End of a sentence. A colon and a semicolon end one, too, and so does the field of a record or parameter."""
+FRAGMENT = re.compile(
+    "(What|Of|The same|Those|How|So many|So few|Whose|Whom|Which|Where|Whether|As|That|There|Nothing|Nobody|Another"
+    r"|Only|But|And|No more|One more|To|From|In|By|At|For|With)\b"
+)
+"""The beginning of a docstring's first line that is no imperative and no noun phrase."""
+COMMENT = re.compile(r"# (What|Of|The same|Those|How|So many|So few|Whose|Whom)\b")
+"""The beginning of a comment that is a fragment; a comment may begin with a condition."""
 CONDITION = re.compile(r"\b(if|unless|whenever|when|where|until|as long as|provided that|in case)\b", re.IGNORECASE)
 MARKUP = re.compile(r"<!--.*?-->|^```.*?^```$|^\$\$.*?\$\$$", re.DOTALL | re.MULTILINE)
 FORMULA = re.compile(r"\n\s*\n(?:[ ]{4,}.*\n)+(?=\s*\n)")
@@ -63,7 +78,7 @@ class Finding:
     advice: str
 
     def __str__(self) -> str:
-        """As compilers print it."""
+        """Return the line that compilers would print."""
         return f"{self.file}:{self.line}: {self.advice}"
 
 
@@ -102,6 +117,22 @@ def findings(files: Iterable[Path]) -> Iterator[Finding]:
             yield from _in_words(passage, shown, words)
             if passage.sentences:
                 yield from _in_sentences(passage, shown)
+        if file.suffix == ".py" and any(file.is_relative_to(ROOT / name) for name in PLAIN):
+            yield from fragments(file.read_text(encoding="utf-8"), shown)
+
+
+def fragments(text: str, shown: Path) -> Iterator[Finding]:
+    """Yield the docstrings and comments of a module that begin with a fragment."""
+    begun = [(constant.lineno, str(constant.value)) for constant, _ in _docstrings(ast.parse(text))]
+    found = [(line, fragment[0]) for line, said in begun if (fragment := FRAGMENT.match(said))]
+    before = -1
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.COMMENT:
+            if token.start[0] != before + 1 and (fragment := COMMENT.match(token.string)):
+                found.append((token.start[0], fragment[1]))
+            before = token.start[0] if token.line.lstrip().startswith("#") else -1
+    for line, beginning in sorted(found):
+        yield Finding(shown, line, f'"{beginning}": begin with an imperative or a noun phrase')
 
 
 def read_words(part: str, file: Path = ROOT / "analysis" / "words.toml") -> list[tuple[re.Pattern[str], str]]:

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 __all__ = ["FILES", "Ledger", "all_entries", "decide_entry", "run_audit"]
 
 FILES = ("audit.json", "audit.html", "audit.md")
-"""What :func:`run_audit` writes."""
+"""Files that :func:`run_audit` writes."""
 
 FORMAT = "ratt-opt audit, version 1"
 ENUMERATED = "exhaustive enumeration"
@@ -77,7 +77,7 @@ class Ledger:
         return per_chain(self.document())
 
     def findings(self) -> tuple[Finding, ...]:
-        """What the records settle, section by section."""
+        """Conclusions from the records, section by section."""
         return findings(self.document())
 
     def document(self) -> LedgerDocument:
@@ -249,7 +249,7 @@ def _decide_all(
 
 
 def _add_other_verdicts(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> None:
-    """For each refuted entry: does the conclusion hold without it, and which weaker step serves (entries' verdicts)?"""
+    """Decide for each refuted entry whether the conclusion holds without it, and which weaker step serves."""
     verdicts: dict[EntryName, set[str]] = {}
     for entry, record in zip(entries, records, strict=True):
         for name in entry.names:

@@ -26,7 +26,7 @@ __all__ = ["Case", "Chain", "ClaimEntry", "Counted", "Detour", "Entry", "EntryKi
 
 
 class EntryKind(StrEnum):
-    """In which sense a statement is decided; the texts are those of the ledger."""
+    """Sense in which a statement is decided; the texts are those of the ledger."""
 
     STEP = "step"
     """A line from the line before it."""
@@ -42,7 +42,7 @@ class EntryKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class EntryName:
-    """Another entry: one reading of it, or all of them (``None``)."""
+    """Reference to another entry: one reading of it, or all of them (``None``)."""
 
     label: str
     kind: EntryKind

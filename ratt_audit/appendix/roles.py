@@ -43,7 +43,7 @@ class SizedClaim:
 
 
 class Side(Enum):
-    """Whose value an attack is judged by."""
+    """Team by whose value an attack is judged."""
 
     RATT = "RATT's plan"
     OPTIMUM = "the optimum"
@@ -245,7 +245,7 @@ def kept_by(function_class: FunctionClass, factor: Factor, team: Team, group: Ro
 
 
 def every_group(function_class: FunctionClass, factor: Factor, *, largest: int) -> Iterator[SizedClaim]:
-    """For every set S of surviving robots: ``f(u on S) >= factor f(o on S)``, whatever the pattern."""
+    """Claim that ``f(u on S) >= factor f(o on S)`` for every set S of surviving robots, whatever the pattern."""
     for team, group in every_surviving_set(largest=largest):
         yield kept_by(function_class, factor, team, group)
 

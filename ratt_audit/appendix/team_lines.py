@@ -42,7 +42,7 @@ class _Grouping:
 
     @property
     def bounds(self) -> tuple[Inequality, ...]:
-        """What the chains of the groups show."""
+        """Conclusions of the chains of the groups."""
         return tuple(
             Inequality(f"bound of group {k + 1}", factor.gap(self.team.chosen(group), self.team.compared(group)))
             for k, (group, factor) in enumerate(zip(self.left, self.factors, strict=True))
@@ -51,7 +51,7 @@ class _Grouping:
 
 @dataclass(frozen=True, slots=True)
 class _Bound:
-    """What a summing-up line states about its groupings, in symbols."""
+    """Statement of a summing-up line about its groupings, in symbols."""
 
     function_class: FunctionClass
     text: str

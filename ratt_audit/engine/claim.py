@@ -55,7 +55,7 @@ class Ground:
         return tuple(e for e in range(mask.bit_length()) if mask >> e & 1)
 
     def is_feasible(self, mask: int) -> bool:
-        """Whether no robot owns two elements of ``mask``."""
+        """Tell whether no robot owns two elements of ``mask``."""
         owners = [self.owner[e] for e in self.members(mask)]
         return len(set(owners)) == len(owners)
 
@@ -134,7 +134,7 @@ class Inequality:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """For every function of the class on ``ground`` that satisfies ``premises``: ``conclusion >= 0``.
+    """Claim that ``conclusion >= 0`` for every function of the class on ``ground`` that satisfies ``premises``.
 
     ``sides`` : (left, right) if the claim is ``left >= right`` and the best factor on the right makes sense.
     Claims are equal when they are the same question: neither reasons nor sides count.

@@ -26,7 +26,7 @@ CURVATURE_GRID = tuple(Fraction(i, 4) for i in (2, 1, 3))
 
 
 class Verdict(Enum):
-    """What was established; the texts are those of the ledger."""
+    """Verdict on a claim; the texts are those of the ledger."""
 
     PROVED = "proved"
     REFUTED = "refuted"
@@ -49,7 +49,7 @@ class Decision:
 
     @property
     def scope(self) -> str:
-        """For which curvatures the verdict holds."""
+        """Curvatures for which the verdict holds."""
         if not self.claim.function_class.is_parametric:
             return "no curvature in the claim"
         symbol = self.claim.function_class.symbol

@@ -1,4 +1,4 @@
-"""How long a question of the audit may take: the budget of the run, asked if programs are solved.
+"""Time that a question of the audit may take: the budget of the run, asked if programs are solved.
 
 A context variable, as questions are answered once and remembered, whatever the time there was.
 """

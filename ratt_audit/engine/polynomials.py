@@ -39,7 +39,7 @@ class Polynomial:
 
     @property
     def coefficients(self) -> tuple[Fraction, ...]:
-        """By power of ``t``, ascending; none for zero."""
+        """Coefficients by power of ``t``, ascending; none for zero."""
         return tuple(fraction(value) for value in self._inner.coeffs())
 
     @property

@@ -239,12 +239,12 @@ def _text_of(arrangement: Arrangement) -> str:
 
 
 def is_pattern1(arrangement: Arrangement, setting: Setting) -> bool:
-    """Whether one group holds alpha_s baits and all greedy robots."""
+    """Tell whether one group holds alpha_s baits and all greedy robots."""
     return (setting.alpha_s, setting.n_greedy) in arrangement
 
 
 def is_pattern2(arrangement: Arrangement, setting: Setting) -> bool:
-    """Whether two groups are the V1 and V2 of Pattern 2."""
+    """Tell whether two groups are the V1 and V2 of Pattern 2."""
     return any(True for _ in _pattern2_pairs(arrangement, setting))
 
 

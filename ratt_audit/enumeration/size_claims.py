@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ratt_audit.enumeration.setting import Setting
 
     Check = Callable[[Setting], str]
-    """What is wrong at one setting, or the empty string."""
+    """Message of what is wrong at one setting, or the empty string."""
 
 __all__ = ["size_entries"]
 
@@ -161,7 +161,7 @@ def _right_balance(s: Setting) -> str:
 
 
 def _in_v2(s: Setting) -> range:
-    """How many greedy robots V2 can have in Pattern 2'."""
+    """Numbers of greedy robots that V2 can have in Pattern 2'."""
     return range(1, min(s.n_greedy, s.alpha_cs - 1) + 1)
 
 

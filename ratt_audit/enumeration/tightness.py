@@ -1,4 +1,4 @@
-"""What the bounds are worth: Theorem 1's are attained by no instance; what the pattern-free and size bounds are.
+"""Tightness of the bounds: no instance attains Theorem 1's; the pattern-free and size bounds are compared.
 
 The paper leaves the tightness of ``(1-c)^3`` open. It is not tight: ``(1-c)^2`` always holds. Over all teams nothing
 larger does: ``1-k`` and ``(1-c)^2`` are infima, the first attained if ties go against RATT, both approached without.

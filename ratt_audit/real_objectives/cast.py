@@ -87,7 +87,7 @@ def _as(like: Any, number: Any) -> Any:
 
 
 def is_castable(claim: Claim, team: Team | None) -> bool:
-    """Whether the claim speaks of roles and function values only, for a team small enough."""
+    """Tell whether the claim speaks of roles and function values only, for a team small enough."""
     if team is None or claim.auxiliaries:
         return False
     return len(team.robots) <= MOST_ROBOTS or len(team.without_optimum) == len(team.robots)

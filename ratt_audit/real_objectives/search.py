@@ -39,13 +39,13 @@ SPREAD = (30.0, 10.0, 3.0, 1.0)
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a scenario comes from: Section VI's with ``seed``, moved at random until ``step`` (0: not moved)."""
+    """Origin of a scenario: Section VI's with ``seed``, moved at random until ``step`` (0: not moved)."""
 
     n_robots: int
     seed: int
     step: int = 0
     has_start: bool = True
-    """Whether the claim applied to the scenario before the moves."""
+    """Tell whether the claim applied to the scenario before the moves."""
 
     def __str__(self) -> str:
         first = f"random_scenario({self.n_robots}, {N_TARGETS}, alpha_s=0, alpha_c=0, seed={self.seed})"
@@ -70,7 +70,7 @@ class Trial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RealSearch:
-    """What trying the claims of one entry found.
+    """Findings from trying the claims of one entry.
 
     ``applied``, ``broken`` : cases of Section VI to which a claim applies, and those that break it
     ``worst`` : the largest violation, after moves; ``None`` if no claim ever applied

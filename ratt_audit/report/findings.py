@@ -1,4 +1,4 @@
-"""What the ledger settles, worked out from its records: the theorem, the numbered lines, the readings, the repairs."""
+"""Conclusions from the ledger's records: the theorem, the numbered lines, the readings, the repairs."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ def _left(record: EntryRecord) -> str:
 
 
 def _own_claims(records: list[EntryRecord]) -> Finding:
-    """How tight the bounds are."""
+    """Tightness of the bounds."""
     table = [("entry", "statement", "verdict", "evidence")]
     for r in records:
         if r["chain"] == "tightness":

@@ -80,7 +80,7 @@ class WorstRecord(TypedDict):
 
 
 class RealRecord(TypedDict):
-    """What trying an entry on EKF objectives found."""
+    """Findings from trying an entry on EKF objectives."""
 
     objective: str
     section_vi_instances: int
@@ -89,14 +89,14 @@ class RealRecord(TypedDict):
 
 
 class OtherEntry(TypedDict):
-    """Another entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` if readings differ)."""
+    """Other entry, ``label/kind`` or ``label/kind/reading``, and its verdict (``None`` if readings differ)."""
 
     entry: str
     verdict: str | None
 
 
 class EntryHead(TypedDict):
-    """What an entry states, and how it was decided. ``equation`` : its number in the paper; older files lack it."""
+    """Statement of an entry, and how it was decided. ``equation`` : its number in the paper; older files lack it."""
 
     label: str
     equation: NotRequired[int | None]
@@ -208,7 +208,7 @@ def factor_record(best: BestFactor) -> FactorRecord:
 
 
 def real_record(found: RealSearch) -> RealRecord:
-    """What trying an entry on EKF objectives found, complete: the worst instance can be replayed from it."""
+    """Findings from trying an entry on EKF objectives, complete: the worst instance can be replayed from it."""
     return {
         "objective": found.objective,
         "section_vi_instances": found.applied,

@@ -1,4 +1,4 @@
-"""Which guarantees apply to RATT's plan for one problem, and why the others do not."""
+"""Guarantees that apply to RATT's plan for one problem, and the reasons why the others do not."""
 
 from __future__ import annotations
 

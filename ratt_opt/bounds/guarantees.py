@@ -203,7 +203,7 @@ def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = Non
 
 
 def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
-    """Which of the two is given, and its conservative end.
+    """Name and conservative end of the one of the two that is given.
 
     Raises
     ------

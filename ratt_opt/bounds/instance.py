@@ -104,7 +104,7 @@ def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget
     if not size:
         return 1.0
     excess = np.maximum(largest[left] - [single[problem.choices[i]].max() for i in left], 0.0)
-    # Of the groups whose largest excess is e, none has more than the largest marginals with an excess up to e.
+    # No group whose largest excess is e has more than the largest marginals with an excess up to e.
     most = max(np.sort(largest[left[excess <= e]])[-size:].sum() - e for e in np.unique(excess))
     return float(safe / most) if most > 0 else 1.0
 

@@ -32,7 +32,7 @@ def main() -> None:
         ignore_interrupts()
         code = fail("interrupted", INTERRUPTED)
     if code == INTERRUPTED:
-        # What an import left half done may complain on the way out.
+        # A half-done import may complain on the way out.
         from ratt_opt.cli.terminal import abandon_output
 
         abandon_output()

@@ -91,7 +91,7 @@ def attack(
 
 
 def _found(budget: "Budget", search: "Callable[[], T]") -> T | None:
-    """What a search finds, up to an interrupt; ``None`` if the user interrupted before."""
+    """Result of a search, up to an interrupt; ``None`` if the user interrupted before."""
     if budget.is_over:
         return None
     try:

@@ -1,4 +1,4 @@
-"""What happens when the program itself is at fault."""
+"""Messages of faults of the program itself."""
 
 from __future__ import annotations
 

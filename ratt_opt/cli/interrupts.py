@@ -80,7 +80,7 @@ class Interrupts:
 
 
 def ignore_interrupts() -> None:
-    """From now on an interrupt does nothing: the program is ending, and has said all it has to say.
+    """Ignore interrupts from now on: the program is ending, and has said all it has to say.
 
     Ignored by the system: in place of any other handler the interpreter, on its way out, puts death by the signal.
     """

@@ -15,7 +15,7 @@ from ratt_opt.running.progress import Step
 __all__ = ["audit", "verify"]
 
 SUMMARY = ("complete", "quick", "counts", "seconds")
-"""What ``audit --json`` repeats of ``audit.json``."""
+"""Fields that ``audit --json`` repeats of ``audit.json``."""
 
 
 def verify(

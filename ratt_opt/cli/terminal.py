@@ -1,4 +1,4 @@
-"""Where text goes: results to standard output, errors to standard error; what users wrote is text, never markup."""
+"""Output: results to standard output, errors to standard error; what users wrote is text, never markup."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def abandon_output() -> None:
 
 @contextmanager
 def _delivered() -> Iterator[None]:
-    """What is printed inside is flushed; a stream that does not take it is not written to again."""
+    """Flush what is printed inside; a stream that does not take it is not written to again."""
     if sys.stdout is None:
         raise OutputError("standard output is closed")
     try:

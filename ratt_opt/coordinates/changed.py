@@ -74,22 +74,22 @@ class ChangedProblem(Problem):
 
     @property
     def is_smaller(self) -> bool:
-        """Whether coordinates were left out."""
+        """Tell whether coordinates were left out."""
         return bool(self.basis.shape[2] < self.basis.shape[1])
 
     @property
     def is_changed(self) -> bool:
-        """Whether the coordinates are others."""
+        """Tell whether the coordinates are others."""
         return self.objective is not self.whole.objective
 
     @cached_property
     def evaluation_error(self) -> float:
-        """The same as of any problem, against the exact values of ``whole``."""
+        """Evaluation error as of any problem, against the exact values of ``whole``."""
         return evaluation_error(self.information_objective, self.choices) + self.change_error
 
     @property
     def least_value(self) -> float:
-        """The same as of any problem, of the exact values of ``whole``."""
+        """Least value as of any problem, of the exact values of ``whole``."""
         return -min(self.whole.largest_fall, self.largest_fall + self.change_error)
 
     def lifted(self, result: Proved) -> Proved:
@@ -119,7 +119,7 @@ def product_error(left: FloatArray, matrices: FloatArray, right: FloatArray) -> 
 def change_error(
     problem: Problem, objective: InformationObjective, prior: FloatArray, information: FloatArray, share: FloatArray
 ) -> float:
-    """How far values of ``objective`` are from those of ``problem``, which is the same but in other coordinates.
+    """Bound the difference between values of ``objective`` and of ``problem``, the same in other coordinates.
 
     ``prior`` : (M,) how far the prior in these coordinates is from the exact one; ``information`` : (M,) the same of
     the information of a whole plan; ``share`` : (M,) of the criterion's size, whatever else was neglected

@@ -1,4 +1,4 @@
-"""Only the coordinates that are measured: a smaller problem of equal values.
+"""Measured coordinates alone: a smaller problem of equal values.
 
 If every information matrix of a target is ``U X U'`` with one basis ``U`` (d, r), sensors tell about ``y = U'x`` alone.
 ``y`` has the prior ``Q = U'PU`` and the information ``X``. The rest of ``x`` follows: ``x = K y + rest`` with
@@ -47,7 +47,7 @@ RANK = 1e-9
 SLACK = 1e-12
 """Largest information of a plan outside the measured coordinates, in units of the prior's inverse."""
 ROUNDINGS = 16 * float(np.finfo(np.float64).eps)
-"""The same as a share of the plan's whole information, whose sums round off as much."""
+"""Rounding as a share of the plan's whole information, whose sums round off as much."""
 REGULAR = 1e-6
 """Least ratio of the singular values of ``C K``: below it the change of coordinates would cost digits."""
 KINDS = (TraceObjective, MaxEigenvalueObjective)
@@ -153,7 +153,7 @@ def _change(objective: InformationObjective, measured: _Coordinates) -> _Change 
 
 
 def _is_measured(prior: FloatArray, output: FloatArray, seen: FloatArray) -> bool:
-    """Whether the output's part ``seen``, which is a function of measured coordinates, is all of it."""
+    """Tell whether the output's part ``seen``, a function of measured coordinates, is all of it."""
     rest, whole = ((x @ prior @ np.swapaxes(x, -1, -2)) for x in (output - seen, output))
     return bool((np.linalg.norm(rest, axis=(-1, -2)) <= SLACK * np.linalg.norm(whole, axis=(-1, -2))).all())
 
@@ -174,7 +174,7 @@ def _in_coordinates(
 def _error(
     problem: Problem, smaller: InformationObjective, coordinates: _Coordinates, outputs: FloatArray | None
 ) -> float:
-    """What rounding changes, and what was left out beside the measured coordinates."""
+    """Bound the changes by rounding and by what was left out beside the measured coordinates."""
     objective, (basis, inverse) = problem.information_objective, (coordinates.basis, coordinates.inverse)
     r = basis.shape[-1]
     prior = sizes_of(product_error(coordinates.turned, objective.prior, basis))

@@ -80,7 +80,7 @@ def _changed(problem: Problem, objective: InformationObjective) -> ChangedProble
 
 
 def _error(problem: Problem, objective: InformationObjective, changed: InformationObjective, root: FloatArray) -> float:
-    """What rounding the root of the prior, the information and the output changes."""
+    """Bound the changes by rounding the root of the prior, the information and the output."""
     d, turned = objective.dimension, np.swapaxes(root, -1, -2)
     prior = sizes_of(root @ turned - objective.prior) + sizes_of(product_error(root, np.eye(d), turned))
     values = np.linalg.eigvalsh(objective.information)

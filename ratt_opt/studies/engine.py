@@ -92,7 +92,7 @@ def _somewhere(folder: str | Path | None) -> Iterator[Path]:
 
 @contextmanager
 def _running(executor: Executor | None, workers: int | None) -> Iterator[Executor | None]:
-    """Where trials run; ``None`` is this process."""
+    """Place where trials run; ``None`` is this process."""
     if executor is not None or workers == 1:
         yield executor
         return

@@ -1,4 +1,4 @@
-"""Where trials run: local processes, or a Dask cluster."""
+"""Places where trials run: local processes, or a Dask cluster."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def open_executor(cluster: str | None, workers: int | None) -> Iterator[Executor
 
 
 def has_workers(executor: Executor) -> bool:
-    """Whether anybody runs trials; only a cluster can be without, and one that does not answer fails its trials."""
+    """Tell whether anybody runs trials; a cluster that does not answer fails its trials."""
     client = getattr(executor, "_client", None)
     if client is None:
         return True
@@ -57,7 +57,7 @@ def dask_cluster(address: str) -> Iterator[Executor]:
     except (OSError, ValueError, TypeError):
         rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
         raise InputError("cluster", rule, address) from None
-    # What it would log of a lost scheduler is said in one line by the engine.
+    # The engine says in one line what it would log of a lost scheduler.
     with _silenced("distributed", "tornado"), client:
         _check_workers(client, address)
         yield client.get_executor(pure=False)

@@ -41,13 +41,13 @@ if TYPE_CHECKING:
 __all__ = ["ATTACKERS", "GRAPHS", "METRICS", "PLANNERS", "Instance"]
 
 METRICS = ("value", "proved", "trace", "mse")
-"""What can be measured of a planner under an attacker; the last two need a physical scenario."""
+"""Metrics of a planner under an attacker; the last two need a physical scenario."""
 SENSOR = "sensor."
 """Prefix of the options that are fields of the sensor, not arguments of ``random_scenario``."""
 LARGEST_EXHAUSTIVE = 5
 """Robots up to which the optimum is found by evaluating every plan; beyond it is bracketed by ``solve_maxmin``."""
 EFFORT: dict[str, Any] = {"gap": 5e-4, "max_nodes": 30}
-"""Where the bracket of a large optimum stops; counted in nodes, not seconds, so that rows are reproducible."""
+"""Limits of the bracket of a large optimum; counted in nodes, not seconds, so that rows are reproducible."""
 
 
 @dataclass(slots=True)

@@ -40,7 +40,7 @@ LABELS = {
     "random": "Random",
     "myopic": "Myopic",
 }
-"""What the paper calls its planners; others go by their own names."""
+"""Names of planners in the paper; others go by their own names."""
 
 
 IN_TURN = [PLANNERS[name].colour for name in ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")]
@@ -122,7 +122,7 @@ def _label(planner: str) -> str:
 
 
 def _told_apart(cases: Sequence[str]) -> tuple[str, list[str]]:
-    """What all cases have in common, and what tells each apart, a line for each part of its name."""
+    """Parts of names that all cases share, and those that tell each apart, a line for each part."""
     parts = [case.split() for case in cases]
     common = [part for part in parts[0] if all(part in other for other in parts)] if len(cases) > 1 else parts[0]
     return fill(" ".join(map(literal, common))), [

@@ -1,4 +1,4 @@
-"""What is measured once per trial, whatever the planners: brackets of the optimum and guarantees."""
+"""Quantities measured once per trial, whatever the planners: brackets of the optimum and guarantees."""
 
 from __future__ import annotations
 

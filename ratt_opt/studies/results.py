@@ -1,4 +1,4 @@
-"""What a study found: its rows, the means with their intervals, and these as data frame, LaTeX and figure."""
+"""Results of a study: its rows, the means with their intervals, and these as data frame, LaTeX and figure."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ class Results:
         return ["case", "attacker", "planner", *map(headed, kept)], rows
 
     def note(self, minus: str | None = None) -> str:
-        """What the numbers of a table or figure are."""
+        """Description of the numbers of a table or figure."""
         what = "mean" if minus is None else f"mean difference from {minus}, trial by trial,"
         return f"{what} of {len({row['trial'] for row in self.rows})} trials, with its 95 % interval"
 

@@ -73,7 +73,7 @@ class Mean:
 
 
 class Verdict(Enum):
-    """What the intervals of all cases of a claim say together."""
+    """Verdict of the intervals of all cases of a claim together."""
 
     CONFIRMED = "confirmed"
     """Every case's interval is on the claimed side (an intersection-union test: no correction is needed)."""

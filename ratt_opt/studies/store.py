@@ -192,7 +192,7 @@ def _claim(study: Study, folder: Path, *, accept_old_rows: bool) -> dict[str, An
 
 
 def _has_rows(journal: Path) -> bool:
-    """Whether a trial was finished: a whole line beside the header."""
+    """Tell whether a trial was finished: a whole line beside the header."""
     return journal.exists() and journal.read_bytes().count(b"\n") > 1
 
 

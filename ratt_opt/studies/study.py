@@ -1,4 +1,4 @@
-"""What a study is: the cases it compares, and what it measures in every trial."""
+"""Studies: the cases they compare, and what they measure in every trial."""
 
 from __future__ import annotations
 
@@ -100,12 +100,12 @@ class Study:
 
     @property
     def planner_names(self) -> tuple[str, ...]:
-        """What columns call the planners."""
+        """Names of the planners in columns."""
         return tuple(self.named_planners)
 
     @property
     def attacker_names(self) -> tuple[str, ...]:
-        """What columns call the attackers."""
+        """Names of the attackers in columns."""
         return tuple(self.named_attackers)
 
     @property

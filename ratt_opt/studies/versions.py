@@ -1,4 +1,4 @@
-"""What a row depends on, versions and code; also how a remote worker proves that it has the package."""
+"""Versions and code that a row depends on, and the proof of a remote worker that it has the package."""
 
 from __future__ import annotations
 

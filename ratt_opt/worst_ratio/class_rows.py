@@ -142,7 +142,7 @@ class NonDecreasing:
         return result
 
     def pair(self, start: int, end: int) -> Row:
-        """What the class says of two subsets in use (0: the empty one)."""
+        """Yield the rows of the class for two subsets in use (0: the empty one)."""
         terms: dict[int, Fraction] = {}
         if start:
             terms[self._columns[start]] = Fraction(1)

@@ -18,7 +18,7 @@ __all__ = ["KnownRatio", "known_ratio", "pattern_free_ratio", "proved_ratio", "s
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownRatio:
-    """What is known of one worst ratio without computing it.
+    """Knowledge of one worst ratio without computing it.
 
     ``lower`` : a share that a written proof guarantees. ``attained`` : whether a written family of instances has it, so
     that it is the ratio. ``conjectured`` : the ratio as conjectured from computed values, if that is more.
@@ -46,7 +46,7 @@ def proved_ratio(question: RatioQuestion) -> Fraction:
 
 
 def known_ratio(question: RatioQuestion) -> KnownRatio:
-    """What written proofs, families and conjectures say of one worst ratio on the complete graph.
+    """Collect what written proofs, families and conjectures say of one worst ratio on the complete graph.
 
     For RATT the best of :func:`survivor_bound`, :func:`group_size_bound` (if a bait always survives) and, if no
     cut splits the team, :func:`sensing_ratio`; for the other planners the pattern-free bound.

@@ -32,12 +32,12 @@ class FunctionClass(Enum):
 
     @property
     def is_submodular(self) -> bool:
-        """Whether marginals diminish."""
+        """Tell whether marginals diminish."""
         return self in (FunctionClass.SUBMODULAR, FunctionClass.CURVATURE)
 
     @property
     def is_parametric(self) -> bool:
-        """Whether the class depends on a curvature value."""
+        """Tell whether the class depends on a curvature value."""
         return self in (FunctionClass.TOTAL_CURVATURE, FunctionClass.CURVATURE)
 
 

@@ -28,7 +28,7 @@ __all__ = ["BEHIND", "DENOMINATORS", "MANY_COLUMNS", "ClaimedOptimum", "RatioPro
            "basic_multipliers", "checked_bound", "proved_bound", "rational_points"]  # fmt: skip
 
 MANY_COLUMNS = 1000
-"""From here on an interior-point method with crossover on all rows at once beats simplex on a growing list of rows."""
+"""Columns from which on an interior-point method with crossover on all rows beats simplex on a growing list of rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClaimedOptimum:
-    """What HiGHS returned: ``x`` (columns,) and multipliers ``y`` (rows,), and its basis; not trusted.
+    """Answer of HiGHS: ``x`` (columns,) and multipliers ``y`` (rows,), and its basis; not trusted.
 
     ``basic_columns``, ``tight_rows`` : columns that are basic and rows that are not, equally many.
     """
@@ -96,7 +96,7 @@ class RatioProgram:
 
 
 BEHIND = 1e-9
-"""How far a proved bound may stay behind the claimed one before better rationals are tried."""
+"""Distance by which a proved bound may stay behind the claimed one before better rationals are tried."""
 DENOMINATORS = (60, 10_000, 1_000_000)
 """Denominators tried when a float is read as a rational; whatever comes out is checked exactly."""
 NONZERO = 1e-9

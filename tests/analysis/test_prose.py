@@ -59,6 +59,36 @@ def test_words_and_long_sentences_are_found(sentence: str, kind: str, tmp_path: 
 @pytest.mark.parametrize(
     "text",
     [
+        '"""What a plan keeps."""',
+        'def _f():\n    """Whether it is so."""',
+        'A = 1\n"""Of the time left, a share."""',
+        "# Those that are left\nx = 1",
+        "x = 1  # How far it is",
+    ],
+)
+def test_docstrings_and_comments_that_begin_with_a_fragment_are_found(text: str, tmp_path: Path) -> None:
+    assert len(list(prose.fragments(text, tmp_path))) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '"""Value of a plan."""\n# Choose the plan\n# of largest value\nx = 1',
+        "# Only one is left here, and\n# What begins a later line of a comment does not count\nx = 1",
+        'x = "What it says"',
+    ],
+)
+def test_complete_phrases_are_left_alone(text: str, tmp_path: Path) -> None:
+    assert list(prose.fragments(text, tmp_path)) == []
+
+
+def test_families_that_begin_plainly_exist() -> None:
+    assert all((prose.ROOT / name).exists() for name in prose.PLAIN)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
         "Drop dominated sequences.",
         "The page says where the proof is.",
         "`None where there is none` is code.",

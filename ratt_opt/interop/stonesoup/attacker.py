@@ -42,7 +42,7 @@ class SurvivingGroup:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Aftermath:
-    """What an attack leaves: who is ``blinded``, which links are ``cut``, and the ``groups``, the best one first.
+    """Team after an attack: who is ``blinded``, which links are ``cut``, and the ``groups``, the best one first.
 
     Blinded platforms and sensors stay members of their group: they detect nothing but still relay. ``result`` is
     the bracket of the attack, ``None`` if there was no track to hurt.

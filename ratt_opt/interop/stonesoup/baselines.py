@@ -1,4 +1,4 @@
-"""For comparison: this package's criteria as a reward for Stone Soup's own managers, and a greedy one that is fair.
+"""Baselines: this package's criteria as a reward for Stone Soup's own managers, and a greedy one that is fair.
 
 Stone Soup's greedy manager scores every platform and sensor alone; the one here scores what each adds to those before.
 """
@@ -27,7 +27,7 @@ __all__ = ["CriterionReward", "SequentialGreedySensorManager"]
 
 
 class CriterionReward(RewardFunction, TeamProblem):
-    """What a configuration tells about the tracks: of the whole team, or of what the worst attack leaves.
+    """Value of a configuration for the tracks: of the whole team, or of what the worst attack leaves.
 
     Stone Soup's own rewards look at the sensors of a configuration; here a platform's sensors count too, so that moving
     alone has a value. With ``alpha_s`` or ``alpha_c`` the reward is the worst case. With a ``graph``, configurations

@@ -41,11 +41,11 @@ MEASURES: dict[type[Any], tuple[str, ...]] = {
     RadarRotatingElevationBearingRange: ELEVATION_BEARING_RANGE,
     PassiveElevationBearing: ELEVATION_BEARING,
 }
-"""What each measures, in the order of its noise covariance. Subclasses may see otherwise, so the class must be this."""
+"""Quantities that each measures, in its noise's order. Subclasses may see otherwise, so only these count."""
 
 
 def is_recognised(sensor: Any) -> bool:
-    """Whether :func:`information` knows it: one of these classes exactly, without obstacles."""
+    """Tell whether :func:`information` knows it: one of these classes exactly, without obstacles."""
     return type(sensor) in MEASURES and not getattr(sensor, "obstacles", None)
 
 

@@ -1,4 +1,4 @@
-"""Where the tracks will be: their predictions at one time, in an order that does not depend on the run."""
+"""Predictions of the tracks at one time, in an order that does not depend on the run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What any other sensor tells, by Stone Soup's own objects: slower, one pose and one target at a time."""
+"""Information of any other sensor, by Stone Soup's own objects: slower, one pose and one target at a time."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["information", "linearises_by_jacobian", "note_of"]
 
 
 def linearises_by_jacobian(updater: Any) -> bool:
-    """Whether this updater uses Jacobians (or there is none); others linearise by their own points."""
+    """Tell whether this updater uses Jacobians (or there is none); others linearise by their own points."""
     by_points = isinstance(updater, KalmanUpdater) and not isinstance(updater, ExtendedKalmanUpdater)
     return not by_points or type(updater) is KalmanUpdater
 

@@ -1,4 +1,4 @@
-"""What every combination of a node's actions would tell about every track."""
+"""Information of every combination of a node's actions about every track."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["mapped_by", "node_information", "notes_of"]
 
 MOST_COMBINATIONS = 100_000
-"""Of one node's actions; every one holds a matrix for each target."""
+"""Largest number of combinations of one node's actions; every one holds a matrix for each target."""
 Choices = tuple["Sequence[Option | None]", ...]
-"""For each platform or sensor of a node what it may do; ``None`` leaves it as it stands now."""
+"""Choices of each platform or sensor of a node; ``None`` leaves it as it stands now."""
 
 
 def node_information(
@@ -71,7 +71,7 @@ def mapped_by(nodes: tuple[Node, ...]) -> set[int]:
 
 
 def notes_of(nodes: tuple[Node, ...], updater: Any) -> tuple[str, ...]:
-    """What a user should know of how the sensors are linearised, each once."""
+    """Notes for the user on how the sensors are linearised, each once."""
     asked = [sensor for node in nodes for sensor in node.sensors if not closed_forms.is_recognised(sensor)]
     return tuple(dict.fromkeys(note for sensor in asked if (note := generic.note_of(sensor, updater))))
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["Node", "Option", "TeamManager", "default_option", "in_order", "nodes_of", "options", "title"]
 
 Option = tuple["Action", ...]
-"""What one platform or sensor may do: an action for each of its actionable properties."""
+"""Choice of one platform or sensor: an action for each of its actionable properties."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +49,7 @@ class Node:
 
 
 def title(actionable: object) -> str:
-    """What an error calls a platform or sensor: its class and where it is."""
+    """Name of a platform or sensor in errors: its class and where it is."""
     position = getattr(actionable, "position", None)
     place = "" if position is None else f" at {np.round(np.asarray(position, dtype=float).ravel(), 3).tolist()}"
     return f"{type(actionable).__name__}{place}"
@@ -113,7 +113,7 @@ def options(actionable: Any, timestamp: datetime) -> list[Option]:
 
 
 def default_option(actionable: Any, timestamp: datetime) -> Option:
-    """What it does if nobody asks for anything; the first action of generators that have no default."""
+    """Default action, or the first one of generators that have no default."""
     generators = _generators(actionable, timestamp)
     return tuple(getattr(generator, "default_action", None) or next(iter(generator)) for generator in generators)
 

@@ -93,7 +93,7 @@ class Step:
 
 
 class TeamProblem(Base):
-    """What plans are judged by: how tracks are predicted, what counts, who is linked, what an adversary may do."""
+    """Setting in which plans are judged: predictions of tracks, what counts, links, the adversary's budgets."""
 
     predictor: Any = Property(default=None, doc="Predicts tracks to the time of the actions; None: states as they are.")
     updater: Any = Property(
@@ -151,7 +151,7 @@ def _objective(
 def _measured(
     information: FloatArray, forecast: Forecast, mapped: set[int], counted: Sequence[int] | None
 ) -> tuple[IntArray, ...]:
-    """For each track the coordinates that sensors are made for, some element tells about, or that are ``counted``.
+    """Coordinates of each track that sensors are made for, some element tells about, or that are ``counted``.
 
     They ascend; those of equally large states are alike. Measurements of position tell nothing about velocity but
     through the position, so the position's covariance after them follows from its covariance before, and the log-det of
