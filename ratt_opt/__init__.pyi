@@ -108,6 +108,7 @@ from .missions.live.packets import (
 from .scenario.planner_world import PlannerWorld as PlannerWorld
 from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
+from .missions.bags.loop import BagReplay as BagReplay, replay_bag as replay_bag
 
 # == Studies
 from . import studies as studies

@@ -100,6 +100,7 @@ NO_SEARCH = {
     "register_sensor",
     "reference",
     "remark1_bound",
+    "replay_bag",
     "replay_mrclam",
     "run_mission",
     "save_scenario",

@@ -2,6 +2,7 @@
 
 Open ``program.py`` first: the list of commands, exit codes, errors in one line. A command stands with its kin:
 ``planning.py`` (demo, bound), ``scenarios.py`` (new, schema), ``attacking.py`` (attack), ``tracking.py`` (track),
+``replaying.py`` (replay),
 ``proofs.py`` (verify, audit). ``options.py`` has the options that several commands share, ``terminal.py`` the
 streams, ``exit_codes.py`` how a command ends; ``interrupts.py`` and ``faults.py`` are the last line of defence.
 """

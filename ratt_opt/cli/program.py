@@ -17,6 +17,7 @@ from ratt_opt.cli.attacking import attack
 from ratt_opt.cli.exit_codes import BAD_INPUT, INTERRUPTED, NO_OUTPUT, REFUTED, UNDECIDED
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
+from ratt_opt.cli.replaying import replay
 from ratt_opt.cli.scenarios import new, schema
 from ratt_opt.cli.terminal import OutputError, WorkInterrupted, encode_anything, fail, flush, print_lines
 from ratt_opt.cli.tracking import track
@@ -64,7 +65,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for command in (demo, new, bound, attack, track, verify, audit, schema):
+for command in (demo, new, bound, attack, track, replay, verify, audit, schema):
     app.command(cls=_Command)(command)
 
 # Typer's own usage errors (unknown option, missing value, ...) share this base; typer does not export it.

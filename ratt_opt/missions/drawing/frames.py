@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.missions.result import FlownMission, MissionStep
 
-__all__ = ["MOST_LINKS", "SIGMAS", "frames_of", "limits"]
+__all__ = ["MOST_LINKS", "SIGMAS", "ellipse_of", "frames_of", "limits"]
 
 SIGMAS = 2.4477
 """Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
@@ -32,7 +32,7 @@ def limits(frames: list[dict[str, Any]]) -> tuple[float, float, float, float]:
 
 
 def _frame(number: int, step: MissionStep) -> dict[str, Any]:
-    ellipses = [_ellipse(covariance) for covariance in step.team.belief.position_covariance]
+    ellipses = [ellipse_of(covariance) for covariance in step.team.belief.position_covariance]
     return {
         "step": number,
         "robots": step.poses[:, :3].tolist(),
@@ -46,7 +46,7 @@ def _frame(number: int, step: MissionStep) -> dict[str, Any]:
     }
 
 
-def _ellipse(covariance: FloatArray) -> list[float]:
+def ellipse_of(covariance: FloatArray) -> list[float]:
     """Half-axes [m] and angle [rad] of the 95 % ellipse."""
     variances, axes = np.linalg.eigh(covariance)
     long, short = SIGMAS * np.sqrt(np.clip(variances[::-1], 0.0, None))

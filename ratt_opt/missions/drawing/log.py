@@ -16,11 +16,12 @@ from ratt_opt.missions.drawing.frames import frames_of
 from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from ratt_opt.missions.result import FlownMission
 
-__all__ = ["save_log"]
+__all__ = ["save_frames", "save_log"]
 
 FRAME = "map"
 TOPICS = {
@@ -39,11 +40,22 @@ def save_log(mission: FlownMission, path: Path) -> None:
 
     InputError : the library ``mcap`` is not installed.
     """
+    period = mission.scenario.sampling_period
+    frames = frames_of(mission)
+    save_frames(path, frames, _numbers(mission), [frame["step"] * period for frame in frames])
+
+
+def save_frames(
+    path: Path, frames: Sequence[dict[str, Any]], numbers: Sequence[dict[str, Any]], times: Sequence[float]
+) -> None:
+    """Write pictures with their numbers and times [s].
+
+    InputError : the library ``mcap`` is not installed.
+    """
     try:
         from mcap.writer import Writer
     except ImportError:
         raise InputError("path", "needs the extra viewers (pip install ratt-opt[viewers])", path.suffix) from None
-    period = mission.scenario.sampling_period
     with path.open("wb") as stream:
         writer = Writer(stream)
         writer.start(library="ratt-opt")
@@ -55,9 +67,9 @@ def save_log(mission: FlownMission, path: Path) -> None:
             topic: writer.register_channel(topic=topic, message_encoding="json", schema_id=schemas[name])
             for topic, name in TOPICS.items()
         }
-        for frame, numbers in zip(frames_of(mission), _numbers(mission), strict=True):
-            time = round(frame["step"] * period * NANOSECONDS)
-            for topic, message in {**_messages(frame, time), "/mission": numbers}.items():
+        for frame, row, seconds in zip(frames, numbers, times, strict=True):
+            time = round(seconds * NANOSECONDS)
+            for topic, message in {**_messages(frame, time), "/mission": row}.items():
                 data = json.dumps(message, allow_nan=False).encode()
                 writer.add_message(channel_id=channels[topic], log_time=time, publish_time=time, data=data)
         writer.finish()

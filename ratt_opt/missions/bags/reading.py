@@ -1,0 +1,139 @@
+"""Poses and detections of ROS 1 and ROS 2 bags (MCAP too), read without ROS; the extra ``bags``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ratt_opt.errors import FileFormatError, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+    from pathlib import Path
+
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["Detection", "PoseMessage", "read_bag"]
+
+NANOSECONDS = 1e-9
+DEFINITIONS = {
+    "vision_msgs/msg/ObjectHypothesis": "string class_id\nfloat64 score\n",
+    "vision_msgs/msg/ObjectHypothesisWithPose": "vision_msgs/ObjectHypothesis hypothesis\n"
+    "geometry_msgs/PoseWithCovariance pose\n",
+    "vision_msgs/msg/BoundingBox3D": "geometry_msgs/Pose center\ngeometry_msgs/Vector3 size\n",
+    "vision_msgs/msg/Detection3D": "std_msgs/Header header\nvision_msgs/ObjectHypothesisWithPose[] results\n"
+    "vision_msgs/BoundingBox3D bbox\nstring id\n",
+    "vision_msgs/msg/Detection3DArray": "std_msgs/Header header\nvision_msgs/Detection3D[] detections\n",
+    "derived_object_msgs/msg/ObjectWithCovariance": "std_msgs/Header header\nuint32 id\nuint8 detection_level\n"
+    "bool object_classified\ngeometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n"
+    "geometry_msgs/AccelWithCovariance accel\ngeometry_msgs/Polygon polygon\nshape_msgs/SolidPrimitive shape\n"
+    "uint8 classification\nuint8 classification_certainty\nuint32 classification_age\n",
+    "derived_object_msgs/msg/ObjectWithCovarianceArray": "std_msgs/Header header\n"
+    "derived_object_msgs/ObjectWithCovariance[] objects\n",
+}
+"""Message types that are no part of ROS itself, for bags that do not carry them (``sqlite3``)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PoseMessage:
+    """A robot's pose at ``time`` [s]: ``pose`` (4,) x, y [m], heading [rad], height [m]; ``covariance`` (4, 4)."""
+
+    topic: str
+    time: float
+    pose: FloatArray
+    covariance: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Detection:
+    """An object at ``time`` [s], in the frame of its message: ``place`` (3,) [m], ``velocity`` (3,) [m/s] or ``None``.
+
+    ``covariance`` : (3, 3) of the place [m^2], zero if the message does not say.
+    """
+
+    topic: str
+    time: float
+    object: str
+    place: FloatArray
+    velocity: FloatArray | None
+    covariance: FloatArray
+
+
+def read_bag(path: Path, topics: Collection[str]) -> Iterator[PoseMessage | Detection]:
+    """Poses and detections on these topics, in the order of their recording.
+
+    Raises
+    ------
+    FileFormatError : the bag cannot be read, has no such topic, or a message of another type there.
+    InputError : the library ``rosbags`` is not installed.
+    """
+    try:
+        from rosbags.highlevel import AnyReader, AnyReaderError
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+    except ImportError:
+        raise InputError("bag", "needs the extra bags (pip install ratt-opt[bags])", path.name) from None
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    try:
+        with AnyReader([path], default_typestore=store) as reader:
+            chosen = [one for one in reader.connections if one.topic in topics]
+            for missing in sorted(set(topics) - {one.topic for one in chosen}):
+                raise FileFormatError(str(path), f"must have the topic {missing}", sorted(reader.topics))
+            for connection, _, raw in reader.messages(connections=chosen):
+                message = reader.deserialize(raw, connection.msgtype)
+                yield from _told(path, connection.topic, connection.msgtype, message)
+    except (AnyReaderError, OSError) as error:
+        raise FileFormatError(str(path), "must be a ROS bag", error) from None
+
+
+def _told(path: Path, topic: str, kind: str, message: Any) -> Iterator[PoseMessage | Detection]:
+    """What one message says."""
+    time = message.header.stamp.sec + NANOSECONDS * message.header.stamp.nanosec if hasattr(message, "header") else 0.0
+    if kind.endswith(("/Odometry", "/PoseWithCovarianceStamped")):
+        yield PoseMessage(topic, time, _pose(message.pose.pose), _pose_covariance(message.pose.covariance))
+    elif kind.endswith("/PoseStamped"):
+        yield PoseMessage(topic, time, _pose(message.pose), np.zeros((4, 4)))
+    elif kind.endswith("/Detection3DArray"):
+        for one in message.detections:
+            best = max(one.results, key=_score, default=None)
+            centre = one.bbox.center.position if best is None else best.pose.pose.position
+            spread = np.zeros((3, 3)) if best is None else np.reshape(best.pose.covariance, (6, 6))[:3, :3]
+            name = str(one.id) if getattr(one, "id", "") else ("" if best is None else _class_of(best))
+            yield Detection(topic, time, name, _vector(centre), None, spread)
+    elif kind.endswith(("/ObjectWithCovarianceArray", "/ObjectWithCovariance")):
+        for one in getattr(message, "objects", [message]):
+            spread = np.reshape(one.pose.covariance, (6, 6))[:3, :3]
+            velocity = _vector(one.twist.twist.linear)
+            yield Detection(topic, time, str(one.id), _vector(one.pose.pose.position), velocity, spread)
+    else:
+        rule = "must be poses (Odometry, PoseStamped, PoseWithCovarianceStamped) or detections (Detection3DArray, "
+        raise FileFormatError(f"{path}: {topic}", rule + "ObjectWithCovariance)", kind)
+
+
+def _score(result: Any) -> float:
+    return float(getattr(result, "hypothesis", result).score)
+
+
+def _class_of(result: Any) -> str:
+    """The class of a hypothesis; of ROS 1 a number on the result itself."""
+    return str(result.hypothesis.class_id if hasattr(result, "hypothesis") else result.id)
+
+
+def _vector(v: Any) -> FloatArray:
+    return np.array([v.x, v.y, v.z], dtype=np.float64)
+
+
+def _pose(pose: Any) -> FloatArray:
+    q = pose.orientation
+    heading = np.arctan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+    return np.array([pose.position.x, pose.position.y, heading, pose.position.z], dtype=np.float64)
+
+
+def _pose_covariance(flat: Any) -> FloatArray:
+    """(4, 4) of x, y, heading, height from ROS's (36,) of x, y, z and rotations about x, y, z."""
+    order = [0, 1, 5, 2]
+    matrix = np.reshape(flat, (6, 6))[np.ix_(order, order)]
+    return np.asarray((matrix + matrix.T) / 2, dtype=np.float64)
