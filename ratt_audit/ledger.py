@@ -12,7 +12,8 @@ import numpy as np
 
 from ratt_audit.appendix.entry import ClaimEntry, EntryKind, EnumeratedEntry, entries_of
 from ratt_audit.appendix.patterns import pattern1_chains, pattern2_chains, submodular_chains
-from ratt_audit.appendix.readings import dominance_entries, readings_of_sets, readings_of_the_attack
+from ratt_audit.appendix.readings import LEFT_SIDE, dominance_entries, readings_of_sets, readings_of_the_attack
+from ratt_audit.appendix.roles import Side
 from ratt_audit.appendix.size_theorems import size_theorems
 from ratt_audit.appendix.team_lines import team_lines
 from ratt_audit.appendix.theorems import closing_lines, lemmas, theorems
@@ -26,7 +27,8 @@ from ratt_audit.enumeration.tightness import tightness_entries
 from ratt_audit.real_objectives.search import search_real_objectives
 from ratt_audit.report.findings import findings
 from ratt_audit.report.pages import html_report, markdown_report, per_chain
-from ratt_audit.report.records import begun, claim_record, factor_record, real_record
+from ratt_audit.report.records import begun, claim_record, factor_record, real_record, whole_record
+from ratt_audit.whole.search import WholeSearch, smallest_instance
 from ratt_opt._files import output_directory, write_json, write_together
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.problem import Problem
@@ -43,7 +45,7 @@ if TYPE_CHECKING:
     from ratt_audit.engine.decide import Decision
     from ratt_audit.engine.evidence import Witness
     from ratt_audit.report.findings import Finding
-    from ratt_audit.report.records import EntryRecord, LedgerDocument, OtherEntry
+    from ratt_audit.report.records import EntryRecord, LedgerDocument, OtherEntry, WholeRecord
 
 __all__ = ["FILES", "Ledger", "all_entries", "decide_entry", "run_audit"]
 
@@ -67,6 +69,7 @@ class Ledger:
     seconds: float
     complete: bool
     quick: bool
+    whole_instances: tuple[WholeRecord, ...] = field(default=(), repr=False)
 
     def counts(self) -> dict[str, int]:
         """Entries per verdict."""
@@ -90,6 +93,7 @@ class Ledger:
             "counts": self.counts(),
             "seconds": self.seconds,
             "entries": list(self.records),
+            "whole_instances": list(self.whole_instances),
         }
 
 
@@ -207,11 +211,20 @@ def run_audit(
     folder, own = output_directory(out, *FILES), Budget.inside(budget, time_limit)
     entries: list[Entry] = []
     records: list[EntryRecord] = []
+    whole: list[WholeRecord] = []
     with suppress(OutOfBudget), paced(own):
         _decide_all(own, entries, records, quick=quick, progress=progress)
+        if not quick:
+            _decide_whole(own, entries, records, whole)
     complete = bool(entries) and len(records) == len(entries) and own.stop() is None
     _add_other_verdicts(entries[: len(records)], records)
-    ledger = Ledger(records=tuple(records), seconds=own.elapsed, complete=complete, quick=quick)
+    ledger = Ledger(
+        records=tuple(records),
+        seconds=own.elapsed,
+        complete=complete,
+        quick=quick,
+        whole_instances=tuple(whole),
+    )
     document = ledger.document()
     html, markdown = html_report(document), markdown_report(document)
     writers = (
@@ -244,6 +257,40 @@ def _decide_all(
                 if progress is not None:
                     progress(number, len(entries), entry.label)
                 records.append(decide_entry(entry, quick=quick))
+    except KeyboardInterrupt:
+        budget.interrupt()
+
+
+def refuted_lines(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> dict[tuple[str, str], list[ClaimEntry]]:
+    """Refuted lines about a plan and an attack, by label and kind; each with its refuted readings."""
+    kinds = (EntryKind.STEP, EntryKind.AS_WRITTEN)
+    lines: dict[tuple[str, str], list[ClaimEntry]] = {}
+    for entry, record in zip(entries, records, strict=True):
+        is_line = entry.kind in kinds or entry.label == LEFT_SIDE
+        if isinstance(entry, ClaimEntry) and is_line and record["verdict"] == Verdict.REFUTED.value:
+            lines.setdefault((entry.label, entry.kind.value), []).append(entry)
+    return lines
+
+
+def decide_whole_line(readings: Sequence[ClaimEntry], worst_for: Side, search: WholeSearch) -> WholeRecord:
+    """Decide one refuted line among whole instances in which A* is a worst attack on the plan of ``worst_for``."""
+    sizes = [sized for entry in readings for sized in entry.claims]
+    refuted = {sized.claim: sized for sized in sizes if decide(sized.claim).verdict is Verdict.REFUTED}
+    first = readings[0]
+    return whole_record(first, worst_for.value, smallest_instance(first.chain, refuted.values(), worst_for, search))
+
+
+def _decide_whole(
+    budget: Budget, entries: Sequence[Entry], records: Sequence[EntryRecord], whole: list[WholeRecord]
+) -> None:
+    """Fill in what whole instances say of the refuted lines, as far as time allows; raises ``OutOfBudget``."""
+    try:
+        with Step("whole instances") as step:
+            for (label, _), readings in refuted_lines(entries, records).items():
+                for side in Side:
+                    budget.check()
+                    step.say(f"{label}, A* worst for {side.value}")
+                    whole.append(decide_whole_line(readings, side, WholeSearch()))
     except KeyboardInterrupt:
         budget.interrupt()
 

@@ -5,7 +5,7 @@ A chain of (in)equalities gives three entries a line: as a step, as written, and
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ from ratt_audit.engine.polynomials import ONE, Polynomial
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from ratt_audit.appendix.roles import Team
+    from ratt_audit.appendix.roles import Robots, Team
     from ratt_audit.engine.claim import Inequality, Linear
     from ratt_audit.engine.decide import Verdict
     from ratt_opt.worst_ratio.function_class import FunctionClass
@@ -143,13 +143,14 @@ class Line:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One size of a chain in words: the roles, its first line, its lines, and what holds beside the roles."""
+    """One size of a chain: the roles, its first line, its lines, what holds beside the roles, who is blinded."""
 
     size: str
     team: Team
     start: Linear
     lines: tuple[Line, ...]
     given: tuple[Inequality, ...] = ()
+    attacked: Robots = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,5 +240,5 @@ def _both_ways(
     left, right = before.expression * line.denominator, line.expression * before.denominator
     there = team.comparison(chain.function_class, left, right, premises)
     back = team.comparison(chain.function_class, right, left, premises)
-    first = SizedClaim(size=case.size, robots=robots, claim=there, team=team)
-    return first, SizedClaim(size=case.size, robots=robots, claim=back, team=team)
+    first = SizedClaim(size=case.size, robots=robots, claim=there, team=team, attacked=case.attacked)
+    return first, replace(first, claim=back)

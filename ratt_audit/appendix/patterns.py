@@ -65,7 +65,7 @@ def _case_d1(team: Team, attacked: Robots) -> Case:
         Line(">=", team.compared(greedy) * T3, "(1-c)^3 f(u* on V1g)"),
         Line(">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=readings),
     )
-    return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines)
+    return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines, attacked=attacked)
 
 
 def _all_bait(*, attacked: int) -> Iterator[Case]:
@@ -86,7 +86,8 @@ def _bait_case(survivors: int, attacked: int, symbol: str, kept: Polynomial, bou
         _by_own_best(team, left, team.singles(map(optimum, left)) * T, f"(1-{symbol}) sum of f(u*_i)"),
         Line(">=", team.compared(left) * kept, bound),
     )
-    return Case(size=team.text(team.bait[survivors:]), team=team, start=team.chosen(left), lines=lines)
+    hit = team.bait[survivors:]
+    return Case(size=team.text(hit), team=team, start=team.chosen(left), lines=lines, attacked=hit)
 
 
 OPTIMAL_PLAN = "u*_i is what the optimal plan gives robot i"
@@ -156,7 +157,7 @@ def _case_d3(team: Team, attacked: Robots) -> Case:
         Line(">=", whole * T3, "(1-c)^3 f(u* on V1b1 and V1g): subadditivity of a non-decreasing f"),
         Line(">=", team.compared(left) * T3, "(1-c)^3 f(u* on V1\\A*)", readings=readings),
     )
-    return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines)
+    return Case(size=team.text(attacked), team=team, start=team.chosen(left), lines=lines, attacked=attacked)
 
 
 FEW_BAITS = ((1, 1, 0, 2), (1, 1, 0, 3), (1, 1, 1, 2), (2, 1, 0, 3), (1, 2, 0, 3))
@@ -247,7 +248,8 @@ def _substituted(team: Team, group: Robots, hit: Robots) -> Case:
 
 def x1_text(team: Team, attacked: Robots) -> str:
     """Roles, attack and the greedy order in words."""
-    return f"{team.text(attacked)}; x1 in V2, chosen {'after' if team.greedy[0] == 'g1' else 'before'} g1"
+    order = "" if team.greedy == ("x1",) else f", chosen {'after' if team.greedy[0] == 'g1' else 'before'} g1"
+    return f"{team.text(attacked)}; x1 in V2{order}"
 
 
 def _few_baits_attacked() -> Iterator[Case]:
@@ -260,24 +262,30 @@ def _few_baits_attacked() -> Iterator[Case]:
         yield Case(size=text, team=team, start=team.chosen(left), lines=(line,))
 
 
-GROUP = ("b1", "b2", "g1")
-"""V1 with alpha_s = 1 and |V2g| = 1; x1 is the greedy robot in V2."""
+BAITS = ("b1", "b2")
+GROUP = (*BAITS, "g1")
+"""V1 with alpha_s = 1 and |V2g| = 1; x1 is the greedy robot in V2. V1 may be its baits alone."""
 
 
 def submodular_chains() -> tuple[Chain, ...]:
     """The chains of the submodular proof, in the paper's order."""
-    many = tuple(_case(team, attacked) for team in beside_v2(("b1", "b2")) for attacked in attacks_on(GROUP, 1))
+    baits_alone = _case(Team(BAITS, ("x1",)), BAITS, BAITS[:1])
+    beside = (_case(team, GROUP, attacked) for team in beside_v2(BAITS) for attacked in attacks_on(GROUP, 1))
     sizes = ((1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (4, 0))
     bait = tuple(_bait_case(survivors, attacked, "k", T, "(1-k) f(u*)") for survivors, attacked in sizes)
     kind = FunctionClass.CURVATURE
-    return Chain("sub_p2vk", kind, bait), Chain("sub_p2d1v1", kind, many), _few_baits_chain("sub_p2d1v2", kind)
+    return (
+        Chain("sub_p2vk", kind, bait),
+        Chain("sub_p2d1v1", kind, (baits_alone, *beside)),
+        _few_baits_chain("sub_p2d1v2", kind),
+    )
 
 
-def _case(team: Team, attacked: Robots) -> Case:
-    left = tuple(r for r in GROUP if r not in attacked)
+def _case(team: Team, group: Robots, attacked: Robots) -> Case:
+    left = tuple(r for r in group if r not in attacked)
     first = [r for r in ("b1",) if r not in attacked]
-    kept, hit = [r for r in ("g1",) if r not in attacked], [r for r in ("g1",) if r in attacked]
-    greedy, readings = team.greedy, whose_worst(team, GROUP, attacked)
+    kept, hit = [r for r in group[2:] if r not in attacked], [r for r in group[2:] if r in attacked]
+    greedy, readings = team.greedy, whose_worst(team, group, attacked)
     split, swapped = team.singles([*first, "b2", *kept]), team.singles([*first, "x1", *kept])
     lines = (
         Line("=", team.chosen(left), "f(u) on V1b\\A* and V1g\\A*"),
@@ -291,4 +299,4 @@ def _case(team: Team, attacked: Robots) -> Case:
         Line(">=", team.compared(greedy) * T, "(1-k)/(1+k) f(u* on Vg)", ONE_PLUS_K),
         Line(">=", team.compared(left) * T, "(1-k)/(1+k) f(u* on V1\\A*)", ONE_PLUS_K, readings=readings),
     )
-    return Case(size=x1_text(team, attacked), team=team, start=team.chosen(left), lines=lines)
+    return Case(size=x1_text(team, attacked), team=team, start=team.chosen(left), lines=lines, attacked=attacked)

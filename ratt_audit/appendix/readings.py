@@ -102,7 +102,7 @@ def _other_attacks(worst: Side, side: Side) -> Iterator[SizedClaim]:
             for other in (robot for robot in team.robots if robot not in attacked):
                 claim = team.claim(ND, team.value(side, set(team.robots) - {other}) - here, premises)
                 text = f"{team.text(attacked)}, against blinding {other}"
-                yield SizedClaim(size=text, robots=len(team.robots), claim=claim, team=team)
+                yield SizedClaim(size=text, robots=len(team.robots), claim=claim, team=team, attacked=attacked)
 
 
 def _below(side: Side) -> Iterator[SizedClaim]:
@@ -162,7 +162,7 @@ def _every_subset(*, from_start: bool) -> Iterator[SizedClaim]:
             for chosen in combinations(GROUP, 2):
                 claim = team.comparison(FunctionClass.CURVATURE, above * ONE_PLUS_K, team.compared(chosen) * T)
                 text = f"{team.text((attacked,))}; W = {{{','.join(chosen)}}}; order {','.join(team.greedy)}"
-                yield SizedClaim(size=text, robots=4, claim=claim, team=team)
+                yield SizedClaim(size=text, robots=4, claim=claim, team=team, attacked=(attacked,))
 
 
 SETTINGS = {2: (6, 1, 9), 3: (7, 2, 12)}

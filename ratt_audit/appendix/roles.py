@@ -33,13 +33,14 @@ __all__ = ["CUBED", "KEPT", "KEPT_OVER_ONE_PLUS_K", "ONE_PLUS_K", "SQUARED", "T2
 class SizedClaim:
     """One linear claim of an entry: a size and who is attacked in words, robots in play, the question.
 
-    ``team`` : the roles, if the elements have any.
+    ``team`` : the roles, if the elements have any; ``attacked`` : who of the group is blinded, if it is one of a chain.
     """
 
     size: str
     robots: int
     claim: Claim
     team: Team | None = None
+    attacked: Robots = ()
 
 
 class Side(Enum):

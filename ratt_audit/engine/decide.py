@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_audit.engine.claim import Claim
     from ratt_audit.engine.evidence import Proof, Witness
 
-__all__ = ["CURVATURE_GRID", "BestFactor", "Decision", "Verdict", "best_factors", "decide"]
+__all__ = ["CURVATURE_GRID", "BestFactor", "Decision", "Verdict", "best_factors", "curvatures_tried", "decide"]
 
 CURVATURE_GRID = tuple(Fraction(i, 4) for i in (2, 1, 3))
 """Curvatures tried for counterexamples, and for proofs if none covers all values at once."""

@@ -14,7 +14,7 @@ from ratt_audit.appendix.theorems import PATTERN_FREE_ND, PATTERN_FREE_SUB, THEO
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_audit.report.records import EntryHead, EntryRecord, LedgerDocument
+    from ratt_audit.report.records import EntryHead, EntryRecord, LedgerDocument, WholeRecord
 
 __all__ = ["BY_ATTACK", "BY_READING", "FAILS", "HOLDS", "Finding", "findings", "line_outcomes", "title"]
 
@@ -45,6 +45,7 @@ def findings(document: LedgerDocument) -> tuple[Finding, ...]:
         _theorems(records),
         _lines(records),
         _readings(records),
+        _whole(document.get("whole_instances", [])),
         _repairs(records),
         _misprints(records),
         _own_claims(records),
@@ -138,25 +139,83 @@ def _misprints(records: list[EntryRecord]) -> Finding:
 def _readings(records: list[EntryRecord]) -> Finding:
     """Lines decided under several readings of whose worst attack A* is."""
     table = [("step", *(f"A* is {who} worst attack" for who in (PLAN, OPTIMUM)), "A* is worst for the team only")]
-    fails: dict[str, list[str]] = {PLAN: [], OPTIMUM: []}
     for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
         found = {who: r["verdict"] for r in group if (who := _whose(r["reading"]))}
         if len(found) > 1:
             table.append((numbered(label), *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
-            for who, labels in fails.items():
-                labels.extend([label] * (found.get(who) == REFUTED))
-    sentences = []
-    for who, labels in fails.items():
-        steps = "1 step fails" if len(labels) == 1 else f"{len(labels)} steps fail"
-        sentences.append(f"If A* is {who} worst attack, {steps}.")
-    if all(fails.values()):
-        sentences.append("So no single reading of A* makes every step hold.")
+    sentences = ["A* is worst within the group of the line here; the next table takes whole teams."]
     if any(r["label"] == LEFT_SIDE and r["verdict"] == REFUTED and _whose(r["reading"]) == OPTIMUM for r in records):
         sentences.append(
             "And with the optimum's worst attack the appendix speaks of RATT's value under that attack, Theorem 1 "
             f"about RATT's own worst case: going from one to the other ({LEFT_SIDE}) is refuted."
         )
     return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
+
+
+NO_INSTANCE = "holds in whole instances"
+
+
+def _whole(records: Sequence[WholeRecord]) -> Finding:
+    """Refuted lines on whole instances: the smallest one for each plan whose worst attack A* may be."""
+    sides = list(dict.fromkeys(record["worst_for"] for record in records))
+    table = [("line", *(f"A* is a worst attack on {side}" for side in sides))]
+    for (label, kind), group in _by_line(records).items():
+        table.append((f"{numbered(label)}, {kind}", *(_whole_cell(group.get(side)) for side in sides)))
+    text = (
+        "A whole instance is a set function, budgets on a complete graph, RATT's plan by RATT itself, an optimal plan "
+        "and a worst attack A* that leaves the groups of the line's pattern. Each one was found by exact linear "
+        "programs and re-checked by the exact attack and by enumerating all plans."
+    )
+    counts = [_failing_steps(records, side) for side in sides]
+    tail = "Teams that the table does not name were not decided."
+    return Finding(heading="Which lines fail in whole instances?", sentences=(text, *counts, tail), table=tuple(table))
+
+
+def _by_line(records: Sequence[WholeRecord]) -> dict[tuple[str, str], dict[str, WholeRecord]]:
+    lines: dict[tuple[str, str], dict[str, WholeRecord]] = {}
+    for record in records:
+        lines.setdefault((record["label"], record["kind"]), {})[record["worst_for"]] = record
+    return lines
+
+
+def _failing_steps(records: Sequence[WholeRecord], side: str) -> str:
+    steps = [r for r in records if r["worst_for"] == side and r["kind"] == STEP]
+    failing = [numbered(r["label"]) for r in steps if r["instance"] is not None]
+    fail = "1 step fails" if len(failing) == 1 else f"{len(failing)} steps fail"
+    named = f" ({', '.join(failing)})" if failing else ""
+    return f"If A* is a worst attack on {side}, {fail} in whole instances{named}."
+
+
+def _whole_cell(record: WholeRecord | None) -> str:
+    """The smallest instance, after the smaller teams on which the line holds."""
+    if record is None:
+        return "-"
+    parts = []
+    held = _teams(record, PROVED)
+    undecided = [team for team in _teams(record, None) if team not in held]
+    if held:
+        parts.append(f"{NO_INSTANCE} at (N, alpha_s, alpha_c) = {', '.join(held)}")
+    if undecided:
+        parts.append(f"not decided at {', '.join(undecided)}")
+    found = record["instance"]
+    if found is not None:
+        team = f"({found['n_robots']}, {found['alpha_s']}, {found['alpha_c']})"
+        parts.append(f"fails at {team}, {found['curvature']}: {found['line']} lacks {found['violation']}")
+    return "; ".join(parts) or "no team of the searched sizes has the pattern"
+
+
+def _teams(record: WholeRecord, verdict: str | None) -> list[str]:
+    """Budgets of the teams with this verdict, or with neither a proof nor an instance; a failing budget is no other."""
+    found = [t for t in record["teams"] if (t["verdict"] == verdict if verdict else t["verdict"] not in (PROVED, REFUTED))]
+    budgets = list(dict.fromkeys(_budgets(t["team"]) for t in found))
+    failing = {_budgets(t["team"]) for t in record["teams"] if t["verdict"] == REFUTED}
+    return [budget for budget in budgets if budget not in failing]
+
+
+def _budgets(team: str) -> str:
+    """``(N, alpha_s, alpha_c)`` of a team's text."""
+    numbers = [part.split(" = ")[1] for part in team.split(";")[0].split(", ")]
+    return f"({', '.join(numbers)})"
 
 
 def _whose(reading: str) -> str | None:

@@ -8,16 +8,35 @@ from ratt_audit.appendix.printed import equation_number
 from ratt_audit.engine.evidence import step_inequality
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_audit.appendix.entry import Entry
     from ratt_audit.appendix.roles import SizedClaim
     from ratt_audit.engine.claim import Claim
     from ratt_audit.engine.decide import BestFactor, Decision, Verdict
     from ratt_audit.engine.evidence import Proof, Witness
     from ratt_audit.real_objectives.search import RealSearch
+    from ratt_audit.whole.replay import WholeInstance
+    from ratt_audit.whole.search import Decided
 
-__all__ = ["ClaimRecord", "EntryHead", "EntryRecord", "FactorRecord", "LedgerDocument", "OtherEntry",
-           "RealRecord", "WitnessRecord", "WorstRecord", "begun", "claim_record", "factor_record",
-           "real_record"]  # fmt: skip
+__all__ = [
+    "ClaimRecord",
+    "EntryHead",
+    "EntryRecord",
+    "FactorRecord",
+    "InstanceRecord",
+    "LedgerDocument",
+    "OtherEntry",
+    "RealRecord",
+    "WholeRecord",
+    "WitnessRecord",
+    "WorstRecord",
+    "begun",
+    "claim_record",
+    "factor_record",
+    "real_record",
+    "whole_record",
+]  # fmt: skip
 
 
 class ProofRecord(TypedDict):
@@ -130,8 +149,55 @@ class EntryRecord(EntryHead):
     weaker_step_that_serves: NotRequired[OtherEntry]
 
 
+class InstanceRecord(TypedDict):
+    """A whole instance: values on all subsets by bit mask over ``elements``, budgets, plans, a worst attack.
+
+    ``robot`` : owner of each element; ``groups`` : those that the attack leaves, blinded robots included.
+    ``line`` : what the line says here, and ``violation`` how much it lacks.
+    """
+
+    n_robots: int
+    alpha_s: int
+    alpha_c: int
+    elements: list[str]
+    robot: list[int]
+    values: list[int]
+    curvature: str
+    plan: list[int]
+    bait: list[int]
+    optimal: list[int]
+    sensing: list[int]
+    links: list[list[int]]
+    groups: list[list[int]]
+    ratt_worst: float
+    optimum: float
+    line: str
+    values_in_play: dict[str, int]
+    violation: str
+
+
+class WholeTeamRecord(TypedDict):
+    """One team on which a line was decided among whole instances."""
+
+    team: str
+    verdict: str
+
+
+class WholeRecord(TypedDict):
+    """A refuted line among whole instances, on teams in order of size until one refutes it.
+
+    ``worst_for`` : the plan whose worst attack A* is.
+    """
+
+    label: str
+    kind: str
+    worst_for: str
+    teams: list[WholeTeamRecord]
+    instance: InstanceRecord | None
+
+
 class LedgerDocument(TypedDict):
-    """The whole file."""
+    """The whole file; older and quick ones lack ``whole_instances``."""
 
     format: str
     complete: bool
@@ -140,6 +206,7 @@ class LedgerDocument(TypedDict):
     counts: dict[str, int]
     seconds: float
     entries: list[EntryRecord]
+    whole_instances: NotRequired[list[WholeRecord]]
 
 
 def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:
@@ -228,4 +295,40 @@ def _worst(found: RealSearch) -> WorstRecord | None:
         "violated_exactly": found.violated_exactly,
         "elements": dict(zip(worst.sized.team.ground.names, worst.players, strict=True)),
         "scenario": worst.scenario.model_dump(mode="json"),
+    }
+
+
+def whole_record(entry: Entry, worst_for: str, decided: Sequence[Decided]) -> WholeRecord:
+    """What whole instances say of one refuted line."""
+    found = decided[-1].instance if decided else None
+    return {
+        "label": entry.label,
+        "kind": entry.kind.value,
+        "worst_for": worst_for,
+        "teams": [{"team": each.whole.text(), "verdict": each.verdict.value} for each in decided],
+        "instance": None if found is None else _instance(found),
+    }
+
+
+def _instance(found: WholeInstance) -> InstanceRecord:
+    index = {robot: i for i, robot in enumerate(found.whole.team.robots)}
+    return {
+        "n_robots": len(index),
+        "alpha_s": found.whole.alpha_s,
+        "alpha_c": found.whole.alpha_c,
+        "elements": list(found.names),
+        "robot": list(found.robot),
+        "values": list(found.values),
+        "curvature": found.curvature,
+        "plan": list(found.plan),
+        "bait": list(found.bait),
+        "optimal": list(found.optimal),
+        "sensing": sorted(found.attack.sensing),
+        "links": sorted(list(link) for link in found.attack.links),
+        "groups": [[index[robot] for robot in group] for group in found.whole.groups],
+        "ratt_worst": found.ratt_worst,
+        "optimum": found.optimum,
+        "line": found.line,
+        "values_in_play": found.in_play,
+        "violation": found.violation,
     }
