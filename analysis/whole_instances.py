@@ -23,9 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["draw", "shown"]
 
 BAIT, GREEDY = "#e69f00", "#0072b2"
-KEY = (
-    "Boxes: groups that A* leaves. Orange: bait. Blue: greedy. Cross: blinded. o(b1): the optimum's choice for robot b1."
-)
+KEY = "Boxes: groups that A* leaves. Orange: bait. Blue: greedy. Cross: blinded. o(b1): the optimum's choice for b1."
 
 
 def shown(document: LedgerDocument) -> list[WholeRecord]:

@@ -139,11 +139,15 @@ def _misprints(records: list[EntryRecord]) -> Finding:
 def _readings(records: list[EntryRecord]) -> Finding:
     """Lines decided under several readings of whose worst attack A* is."""
     table = [("step", *(f"A* is {who} worst attack" for who in (PLAN, OPTIMUM)), "A* is worst for the team only")]
+    fails = {PLAN: False, OPTIMUM: False}
     for label, group in _grouped([r for r in records if r["kind"] == STEP]).items():
         found = {who: r["verdict"] for r in group if (who := _whose(r["reading"]))}
         if len(found) > 1:
             table.append((numbered(label), *(found.get(who, "-") for who in (PLAN, OPTIMUM, TEAM))))
+            fails = {who: fails[who] or found.get(who) == REFUTED for who in fails}
     sentences = ["A* is worst within the group of the line here; the next table takes whole teams."]
+    if all(fails.values()):
+        sentences.append("So no single reading of A* makes every step hold.")
     if any(r["label"] == LEFT_SIDE and r["verdict"] == REFUTED and _whose(r["reading"]) == OPTIMUM for r in records):
         sentences.append(
             "And with the optimum's worst attack the appendix speaks of RATT's value under that attack, Theorem 1 "
@@ -205,8 +209,9 @@ def _whole_cell(record: WholeRecord | None) -> str:
 
 
 def _teams(record: WholeRecord, verdict: str | None) -> list[str]:
-    """Budgets of the teams with this verdict, or with neither a proof nor an instance; a failing budget is no other."""
-    found = [t for t in record["teams"] if (t["verdict"] == verdict if verdict else t["verdict"] not in (PROVED, REFUTED))]
+    """Budgets of the teams with this verdict (``None``: left open); those of the failing team are left out."""
+    is_asked = {verdict} if verdict else {t["verdict"] for t in record["teams"]} - {PROVED, REFUTED}
+    found = [t for t in record["teams"] if t["verdict"] in is_asked]
     budgets = list(dict.fromkeys(_budgets(t["team"]) for t in found))
     failing = {_budgets(t["team"]) for t in record["teams"] if t["verdict"] == REFUTED}
     return [budget for budget in budgets if budget not in failing]
@@ -214,7 +219,7 @@ def _teams(record: WholeRecord, verdict: str | None) -> list[str]:
 
 def _budgets(team: str) -> str:
     """``(N, alpha_s, alpha_c)`` of a team's text."""
-    numbers = [part.split(" = ")[1] for part in team.split(";")[0].split(", ")]
+    numbers = [part.split(" = ")[1] for part in team.split(";", maxsplit=1)[0].split(", ")]
     return f"({', '.join(numbers)})"
 
 

@@ -74,6 +74,38 @@ def test_every_section_by_hand() -> None:
     }
 
 
+WHOLE = {"n_robots": 4, "alpha_s": 1, "alpha_c": 4, "curvature": "c = 1/2", "line": "f(a) >= 0", "violation": "2"}
+
+
+def whole(label: str, worst_for: str, *teams: tuple[str, str]) -> dict[str, Any]:
+    named = [{"team": f"N = {team[0]}, alpha_s = 1, alpha_c = 4; A*", "verdict": team[1]} for team in teams]
+    found = WHOLE if any(verdict == "refuted" for _, verdict in teams) else None
+    return {"label": label, "kind": "step", "worst_for": worst_for, "teams": named, "instance": found}
+
+
+def test_whole_instances_are_counted_once_for_each_meaning_of_the_attack() -> None:
+    records = [
+        whole("x_2", "RATT's plan", ("3", "proved"), ("4", "not decidable here"), ("4", "refuted")),
+        whole("x_2", "the optimum", ("3", "proved"), ("5", "not decidable here")),
+        whole("x_3", "the optimum"),
+    ]
+    sections = {s.heading: s for s in findings({**document(RECORDS), "whole_instances": records})}
+    section = sections["Which lines fail in whole instances?"]
+    assert section.sentences[1:3] == (
+        "If A* is a worst attack on RATT's plan, 1 step fails in whole instances (x_2).",
+        "If A* is a worst attack on the optimum, 0 steps fail in whole instances.",
+    )
+    held = "holds in whole instances at (N, alpha_s, alpha_c) = (3, 1, 4)"
+    assert section.table[1:] == (
+        (
+            "x_2, step",
+            f"{held}; fails at (4, 1, 4), c = 1/2: f(a) >= 0 lacks 2",
+            f"{held}; not decided at (5, 1, 4)",
+        ),
+        ("x_3, step", "-", "no team of the searched sizes has the pattern"),
+    )
+
+
 def test_a_refuted_theorem_is_not_said_to_hold() -> None:
     broken = [record("eqn:appro_non_descrease", "theorem", "refuted"), *RECORDS[1:]]
     assert findings(document(broken))[0].sentences == ()
