@@ -2,7 +2,7 @@
 
 Run as ``python -m analysis.audit_page --ledger DIR --out PAGE``. ``DIR`` is the folder of ``ratt-opt audit --out
 DIR``. Every verdict and number of the page is read from its ``audit.json`` or computed here as an exact worst-case
-ratio; ``--figure FILE`` names a picture beside the page.
+ratio; ``--figure FILE`` and ``--instances FILE`` name pictures beside the page.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from ratt_audit.report.findings import (
     BY_READING,
     FAILS,
     HOLDS,
+    WHOLE,
     Finding,
     findings,
     line_outcomes,
@@ -73,7 +74,9 @@ This page is written by commands:
 ```bash
 ratt-opt audit --out ledger
 python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/researchers/
-python -m analysis.audit_page --ledger ledger --figure worst_ratio.png --out docs/researchers/audit.md
+python -m analysis.whole_instances --ledger ledger --out docs/researchers/whole_instances.png
+python -m analysis.audit_page --ledger ledger --out docs/researchers/audit.md --figure worst_ratio.png \\
+    --instances whole_instances.png
 ```
 """
 
@@ -91,12 +94,14 @@ def opening(document: LedgerDocument) -> str:
     )
 
 
-def page(document: LedgerDocument, ratios: Finding, figure: str = "") -> str:
-    """Return the page as Markdown."""
+def page(document: LedgerDocument, ratios: Finding, figure: str = "", instances: str = "") -> str:
+    """Return the page as Markdown; ``figure`` and ``instances`` name pictures beside it."""
     counts = ", ".join(f"{number} {verdict}" for verdict, number in document["counts"].items())
     lines = [opening(document), f"The ledger has {len(document['entries'])} entries: {counts}.", ""]
     for finding in (*findings(document), realistic_table(document), ratios):
         lines += finding_lines(finding)
+        if instances and finding.heading == WHOLE:
+            lines += [f"![Robots, groups and values of the smallest instance of each step that fails]({instances})", ""]
     lines += ["## The lines themselves", ""]
     for chain in chain_lines(document):
         lines += finding_lines(chain, level=3)
@@ -161,11 +166,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--ledger", type=Path, required=True, help="folder of ratt-opt audit")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--figure", default="", help="picture to show, as seen from the page")
+    parser.add_argument("--instances", default="", help="picture of the whole instances, as seen from the page")
     options = parser.parse_args(arguments)
     document = json.loads((options.ledger / "audit.json").read_text(encoding="utf-8"))
     if document["quick"] or not document["complete"]:
         parser.error(f"{options.ledger} holds a quick or interrupted audit: run ratt-opt audit --out {options.ledger}")
-    options.out.write_text(page(document, ratio_table(CASES), options.figure), encoding="utf-8")
+    options.out.write_text(page(document, ratio_table(CASES), options.figure, options.instances), encoding="utf-8")
     print(f"written: {options.out}")
 
 

@@ -274,10 +274,11 @@ def refuted_lines(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> d
 
 def decide_whole_line(readings: Sequence[ClaimEntry], worst_for: Side, search: WholeSearch) -> WholeRecord:
     """Decide one refuted line among whole instances in which A* is a worst attack on the plan of ``worst_for``."""
-    sizes = [sized for entry in readings for sized in entry.claims]
-    refuted = {sized.claim: sized for sized in sizes if decide(sized.claim).verdict is Verdict.REFUTED}
+    sizes = (sized for entry in readings for sized in entry.claims)
+    broken = (sized for sized in sizes if decide(sized.claim).verdict is Verdict.REFUTED)
+    cases = {(sized.team, sized.attacked, sized.claim.conclusion): sized for sized in broken}
     first = readings[0]
-    return whole_record(first, worst_for.value, smallest_instance(first.chain, refuted.values(), worst_for, search))
+    return whole_record(first, worst_for.value, smallest_instance(first.chain, cases.values(), worst_for, search))
 
 
 def _decide_whole(

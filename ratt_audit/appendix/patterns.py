@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ratt_audit.engine.claim import Linear
     from ratt_audit.engine.polynomials import Polynomial
 
-__all__ = ["GROUP", "beside_v2", "pattern1_chains", "pattern2_chains", "submodular_chains"]
+__all__ = ["BAITS", "GROUP", "beside_v2", "pattern1_chains", "pattern2_chains", "submodular_chains"]
 
 
 def pattern1_chains() -> tuple[Chain, ...]:

@@ -19,7 +19,7 @@ from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 from ratt_audit.appendix.entry import ClaimEntry, EntryKind, EntryName
-from ratt_audit.appendix.patterns import GROUP, beside_v2
+from ratt_audit.appendix.patterns import BAITS, GROUP, beside_v2
 from ratt_audit.appendix.roles import ONE_PLUS_K, Side, SizedClaim, Team, attacks_on, team_of, worst_for
 from ratt_audit.appendix.theorems import PATTERN_FREE_ND, THEOREM1
 from ratt_audit.engine.claim import Inequality, Linear
@@ -155,14 +155,14 @@ def _swaps(side: Side) -> Iterator[SizedClaim]:
 
 
 def _every_subset(*, from_start: bool) -> Iterator[SizedClaim]:
-    """V1 = {b1, b2, g1}, one of it blinded; x1 is the greedy robot in V2, so |Vg| = 2."""
-    for team in beside_v2(("b1", "b2")):
-        for attacked in ("b1", "g1"):
-            above = team.chosen(r for r in GROUP if r != attacked) if from_start else team.chosen(team.greedy) * T
-            for chosen in combinations(GROUP, 2):
+    """V1 = {b1, b2} or {b1, b2, g1}, one of it blinded; x1 is the greedy robot in V2."""
+    for group, team in ((BAITS, Team(BAITS, ("x1",))), *((GROUP, team) for team in beside_v2(BAITS))):
+        for attacked in ("b1", *group[2:]):
+            above = team.chosen(r for r in group if r != attacked) if from_start else team.chosen(team.greedy) * T
+            for chosen in combinations(group, len(team.greedy)):
                 claim = team.comparison(FunctionClass.CURVATURE, above * ONE_PLUS_K, team.compared(chosen) * T)
                 text = f"{team.text((attacked,))}; W = {{{','.join(chosen)}}}; order {','.join(team.greedy)}"
-                yield SizedClaim(size=text, robots=4, claim=claim, team=team, attacked=(attacked,))
+                yield SizedClaim(size=text, robots=len(team.robots), claim=claim, team=team, attacked=(attacked,))
 
 
 SETTINGS = {2: (6, 1, 9), 3: (7, 2, 12)}

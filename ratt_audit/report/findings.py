@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from ratt_audit.report.records import EntryHead, EntryRecord, LedgerDocument, WholeRecord
 
-__all__ = ["BY_ATTACK", "BY_READING", "FAILS", "HOLDS", "Finding", "findings", "line_outcomes", "title"]
+__all__ = ["BY_ATTACK", "BY_READING", "FAILS", "HOLDS", "WHOLE", "Finding", "findings", "line_outcomes", "title"]
 
 STEP = EntryKind.STEP
 PLAN, OPTIMUM, TEAM = "the plan's", "the optimum's", "the team's only"
@@ -156,6 +156,7 @@ def _readings(records: list[EntryRecord]) -> Finding:
     return Finding(heading="Whose worst attack is A*?", sentences=tuple(sentences), table=tuple(table))
 
 
+WHOLE = "Which lines fail in whole instances?"
 NO_INSTANCE = "holds in whole instances"
 
 
@@ -172,7 +173,7 @@ def _whole(records: Sequence[WholeRecord]) -> Finding:
     )
     counts = [_failing_steps(records, side) for side in sides]
     tail = "Teams that the table does not name were not decided."
-    return Finding(heading="Which lines fail in whole instances?", sentences=(text, *counts, tail), table=tuple(table))
+    return Finding(heading=WHOLE, sentences=(text, *counts, tail), table=tuple(table))
 
 
 def _by_line(records: Sequence[WholeRecord]) -> dict[tuple[str, str], dict[str, WholeRecord]]:

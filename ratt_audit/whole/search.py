@@ -41,20 +41,23 @@ class WholeSearch:
 
     ``largest`` : robots at most; a robot more has four times as many sets.
     ``programs`` : linear programs a team at most; a team that needs more is left undecided.
+    ``programs_in_all`` : linear programs a line at most; larger teams are left out then.
     ``curvature`` : at which counterexamples are looked for.
     """
 
     largest: int = 5
     programs: int = 25
+    programs_in_all: int = 80
     curvature: Fraction = Fraction(1, 2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Decided:
-    """One line on one whole team: refuted by an instance, proved, or left open."""
+    """One line on one whole team: refuted by an instance, proved, or left open; ``programs`` were solved."""
 
     whole: WholeTeam
     verdict: Verdict
+    programs: int
     instance: WholeInstance | None = None
 
 
@@ -64,9 +67,11 @@ def smallest_instance(
     """Decide a line on whole teams, smallest first, until an instance refutes it."""
     teams = ((sized, whole) for sized in sizes for whole in whole_teams(chain, sized, largest=search.largest))
     decided: list[Decided] = []
+    left = search.programs_in_all
     for sized, whole in sorted(teams, key=lambda pair: pair[1].size):
-        decided.append(decide_team(sized, whole, worst_for, search))
-        if decided[-1].instance is not None:
+        decided.append(decide_team(sized, whole, worst_for, replace(search, programs=min(left, search.programs))))
+        left -= decided[-1].programs
+        if decided[-1].instance is not None or left <= 0:
             break
     return tuple(decided)
 
@@ -75,11 +80,9 @@ def decide_team(sized: SizedClaim, whole: WholeTeam, worst_for: Side, search: Wh
     """Decide one line on one whole team."""
     claim, needed = _on_whole_team(sized, whole), tuple(requirements(whole, worst_for))
     nodes: list[Node] = [()]
-    is_proved = True
-    for _ in range(search.programs):
-        if not nodes:
-            break
-        given = nodes.pop()
+    is_proved, solved = True, 0
+    while nodes and solved < search.programs:
+        given, solved = nodes.pop(), solved + 1
         node = replace(claim, premises=(*claim.premises, *given))
         witness = find_witness(node, curvature=search.curvature)
         if witness is None:
@@ -88,10 +91,10 @@ def decide_team(sized: SizedClaim, whole: WholeTeam, worst_for: Side, search: Wh
         broken = _first_broken(needed, witness)
         if broken is None:
             instance = replay(whole, worst_for, node, witness)
-            return Decided(whole=whole, verdict=Verdict.REFUTED, instance=instance)
+            return Decided(whole=whole, verdict=Verdict.REFUTED, programs=solved, instance=instance)
         nodes.extend((*given, *each) for each in _least_broken_last(broken, witness))
-    holds = is_proved and not nodes
-    return Decided(whole=whole, verdict=Verdict.PROVED if holds else Verdict.UNDECIDED)
+    verdict = Verdict.PROVED if is_proved and not nodes else Verdict.UNDECIDED
+    return Decided(whole=whole, verdict=verdict, programs=solved)
 
 
 def _is_closed(node: Claim) -> bool:
