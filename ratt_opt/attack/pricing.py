@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from time import monotonic
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.attack.team import Links, Team, TeamRecord
+from ratt_opt.attack.team import KEPT_LINKS, Links, Team, TeamRecord
 from ratt_opt.native.library import address, function
 
 if TYPE_CHECKING:
@@ -268,20 +268,24 @@ class GroupSearch:
         return rows.value, code == FINISHED
 
 
+@lru_cache(maxsize=KEPT_LINKS)
 def _least_cuts(threat: Threat) -> IntArray:
-    """(N + 1,) links that leave a group of that many robots, at least.
+    """(N + 1,) links that leave a group of that many robots, at least; kept, as every exact attack asks.
 
-    By degrees, and by the second least eigenvalue of the Laplacian.
+    By degrees, and by the second least eigenvalue of the Laplacian, which is N for a complete graph.
 
     Source: for the latter, Fiedler, Czechoslovak Mathematical Journal 25 (1975).
     """
-    robots = threat.graph.n_robots
-    laplacian = np.zeros((robots, robots))
-    for i, j in threat.graph.links:
-        laplacian[i, j] = laplacian[j, i] = -1.0
-    degrees = -laplacian.sum(axis=1)
-    sizes, values = np.arange(robots + 1), np.linalg.eigvalsh(laplacian + np.diag(degrees))
-    spread = (values[1] if robots > 1 else 0.0) * sizes * (robots - sizes) / robots
+    robots, links = threat.graph.n_robots, Links.of(threat)
+    degrees = np.diff(links.start).astype(np.float64)
+    sizes = np.arange(robots + 1)
+    if threat.graph.is_complete:
+        second = float(robots)
+    else:
+        laplacian = np.diag(degrees)
+        laplacian[np.repeat(np.arange(robots), np.diff(links.start)), links.robot] = -1.0
+        second = float(np.linalg.eigvalsh(laplacian)[1]) if robots > 1 else 0.0
+    spread = second * sizes * (robots - sizes) / robots
     by_degree = np.concatenate([[0.0], np.cumsum(np.sort(degrees))]) - sizes * (sizes - 1.0)
     least = np.maximum(np.maximum(by_degree, by_degree[::-1]), spread - 1e-9 * (1.0 + np.abs(spread)))
     return np.asarray(np.ceil(np.maximum(least - 1e-6, 0.0)), dtype=np.int64)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import POINTER, Structure, c_double, c_int32, c_void_p
-from functools import cached_property
+from functools import cached_property, lru_cache
+from itertools import chain
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeGuard
 
 import numpy as np
 
+from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked, function
 from ratt_opt.running.pace import Pace, PaceParams
@@ -179,16 +181,31 @@ class Links(NamedTuple):
 
     @classmethod
     def of(cls, threat: Threat) -> Links:
-        """The graph of a threat."""
-        arcs = sorted([*threat.graph.links, *((j, i) for i, j in threat.graph.links)])
-        place = {arc: a for a, arc in enumerate(arcs)}
-        n_robots = threat.graph.n_robots
-        start = np.searchsorted([i for i, _ in arcs], np.arange(n_robots + 1)) if arcs else np.zeros(n_robots + 1)
-        fixed = [(min(arc), max(arc)) in threat.protected_links for arc in arcs]
-        return cls(
-            start.astype(np.int64),
-            np.array([j for _, j in arcs], dtype=np.int64),
-            np.array([place[j, i] for i, j in arcs], dtype=np.int64),
-            np.array(fixed, dtype=np.bool_),
-            np.array([i in threat.protected_robots for i in range(n_robots)], dtype=np.bool_),
-        )
+        """The graph of a threat; of one that was asked before, the same arrays: every exact attack asks."""
+        return _links_of(threat)
+
+
+KEPT_LINKS = 8
+"""Threats whose arcs are kept, some megabytes each for a thousand robots."""
+
+
+@lru_cache(maxsize=KEPT_LINKS)
+def _links_of(threat: Threat) -> Links:
+    n_robots = threat.graph.n_robots
+    pairs, fixed = (_as_pairs(links) for links in (threat.graph.links, threat.protected_links))
+    tails, heads = np.concatenate([pairs, pairs[:, ::-1]]).T
+    arcs = np.sort(tails * n_robots + heads)
+    tails, heads = arcs // n_robots, arcs % n_robots
+    arrays = (
+        np.searchsorted(tails, np.arange(n_robots + 1)).astype(np.int64),
+        heads.astype(np.int64),
+        np.searchsorted(arcs, heads * n_robots + tails).astype(np.int64),
+        np.isin(np.minimum(tails, heads) * n_robots + np.maximum(tails, heads), fixed[:, 0] * n_robots + fixed[:, 1]),
+        np.isin(np.arange(n_robots), list(threat.protected_robots)),
+    )
+    return Links(*map(readonly, arrays))
+
+
+def _as_pairs(links: Iterable[tuple[int, int]]) -> IntArray:
+    """(L, 2) ends of links."""
+    return np.fromiter(chain.from_iterable(links), dtype=np.int64).reshape(-1, 2)

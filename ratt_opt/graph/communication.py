@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -60,8 +61,8 @@ class CommunicationGraph:
 
     @classmethod
     def complete(cls, n_robots: int) -> CommunicationGraph:
-        """Every robot hears every other (the paper's assumption)."""
-        return cls(n_robots, frozenset((i, j) for j in range(n_robots) for i in range(j)))
+        """Every robot hears every other (the paper's assumption); kept, as problems of a thousand robots ask often."""
+        return _complete(n_robots)
 
     @classmethod
     def from_networkx(cls, graph: object, n_robots: int) -> CommunicationGraph:
@@ -144,3 +145,8 @@ def _bits(mask: int) -> list[int]:
             mask ^= lowest
         return found
     return [i for i, bit in enumerate(reversed(f"{mask:b}")) if bit == "1"]
+
+
+@lru_cache(maxsize=8)
+def _complete(n_robots: int) -> CommunicationGraph:
+    return CommunicationGraph(n_robots, frozenset((i, j) for j in range(n_robots) for i in range(j)))

@@ -11,6 +11,7 @@ import pytest
 
 from ratt_opt.attack import pricing
 from ratt_opt.attack.pricing import BLINDED, UNIT, GroupSearch, Plan, Question
+from ratt_opt.attack.team import Links
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
@@ -150,3 +151,18 @@ def test_groups_of_a_size_cut_no_fewer_links_than_said(seed):
         assert least[size] <= min(nx.cut_size(graph, group) for group in combinations(range(8), size))
     if nx.density(graph) == 1.0:
         assert least.tolist() == [size * (8 - size) for size in range(9)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_arcs_are_those_of_the_definition(seed):
+    rng = np.random.default_rng([seed, 5])
+    n_robots = int(rng.integers(1, 10))
+    graph = CommunicationGraph.from_networkx(nx.gnp_random_graph(n_robots, [0, 0.3, 0.7, 1][seed % 4], seed), n_robots)
+    protected = frozenset(link for link in graph.links if rng.random() < 0.3)
+    found = Links.of(Threat(graph, 0, 0, frozenset({0}), protected))
+    arcs = sorted([*graph.links, *((j, i) for i, j in graph.links)])
+    assert found.robot.tolist() == [j for _, j in arcs]
+    assert found.start.tolist() == [sum(i < robot for i, _ in arcs) for robot in range(n_robots + 1)]
+    assert found.back.tolist() == [arcs.index((j, i)) for i, j in arcs]
+    assert found.fixed.tolist() == [(min(arc), max(arc)) in protected for arc in arcs]
+    assert found.seeing.tolist() == [robot == 0 for robot in range(n_robots)]

@@ -8,6 +8,7 @@ bound, and attacks are annealed.
 
 from __future__ import annotations
 
+from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -80,10 +81,9 @@ class SizeVectorSearch:
         self.weak = WeakFamilies(task, team)
         self.families: list[GroupExchanges] = []
         self._is_about_families = False
-        plan = Plan(team, Links.of(self.threat), self.threat)
+        self._plan = plan = Plan(team, Links.of(self.threat), self.threat)
         self._decision = SizeDecision(team, self.threat, self.vectors)
         self._sizes = ThresholdSearch(task, plan, self._decision, EFFORTS, anneals=vectors is None)
-        self._prices = ThresholdSearch(task, plan, ThresholdDecision(plan))
 
     def run(self) -> Stop:
         """Search every vector; the bracket is valid whenever this stops."""
@@ -156,6 +156,11 @@ class SizeVectorSearch:
         """Thresholds by vectors of sizes, and annealed attacks."""
         self._sizes.task = self.task
         return self._sizes.run()
+
+    @cached_property
+    def _prices(self) -> ThresholdSearch:
+        """Made when asked for: half a second for a thousand robots."""
+        return ThresholdSearch(self.task, self._plan, ThresholdDecision(self._plan))
 
     def dual_prices(self) -> None:
         """Dual prices of robots and links, by thresholds."""
