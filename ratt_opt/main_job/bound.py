@@ -327,7 +327,9 @@ def _omitted(
         omitted["nonrobust"] = "the best plan without attack was not found and proved in its share of the time"
     if guarantees == "none":
         omitted["guarantees"] = "not asked for"
-    elif guarantees == "quick" and found is not None and found.stop is Stop.TIME:
+    elif found is None:
+        omitted["curvature"] = "the criterion falls, or breaks what it states of itself, by more than rounding"
+    elif guarantees == "quick" and found.stop is Stop.TIME:
         omitted["a narrower curvature"] = f"guarantees are quick: {QUICK_SECONDS:g} s at most"
     return omitted
 
@@ -366,7 +368,7 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
     except InputError:
         if not isinstance(f, InformationObjective):
             raise
-        return None, None  # non-decreasing by its formula, not in floating point: nothing can be said about ratios
+        return None, None  # a formula of one's own that breaks what it is relied upon for; the report says so
 
 
 def _guarantees(

@@ -27,6 +27,7 @@ __all__ = [
     "TableFunction",
     "are_exact",
     "check_table_size",
+    "check_total",
     "checked_values",
     "finite_values",
 ]
@@ -36,29 +37,31 @@ LARGEST_TABLE = 26
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeNumberParams:
-    """Whole numbers whose sums are exact in float64: ``terms * largest`` is at most 2**53.
+class ValueParams:
+    """Sizes of values. Whole numbers have exact sums in float64 if ``terms * largest`` is at most 2**53.
 
+    ``limit`` : no value is larger [1], so that sums of many do not overflow: more leaves room for fewer
     ``largest`` : size of a number [1]; ``terms`` : numbers in a sum [1]. More of one leaves less of the other.
     ``block`` : numbers looked at together [1]: more are less overhead, and leave the cache
     """
 
+    limit: float = 1e300
     largest: float = 2.0**45
     terms: int = 256
     block: int = 2**16
 
 
-WHOLE = WholeNumberParams()
+VALUES = ValueParams()
 
 
 def are_exact(numbers: FloatArray, terms: int) -> bool:
     """Whether all are whole, and sums of that many ``terms`` are exact."""
     flat = numbers.ravel()
-    for start in range(0, len(flat), WHOLE.block):
-        some = flat[start : start + WHOLE.block]
-        if np.abs(some).max() > WHOLE.largest or (some != np.rint(some)).any():
+    for start in range(0, len(flat), VALUES.block):
+        some = flat[start : start + VALUES.block]
+        if np.abs(some).max() > VALUES.largest or (some != np.rint(some)).any():
             return False
-    return terms <= WHOLE.terms
+    return terms <= VALUES.terms
 
 
 def check_table_size(n: int) -> None:
@@ -69,29 +72,43 @@ def check_table_size(n: int) -> None:
 
 
 def finite_values(values: FloatArray) -> FloatArray:
-    """Return values of a set function, refused if one is NaN or infinite."""
-    with np.errstate(all="ignore"):
-        total = float(values.sum())  # NaN and infinities survive a sum; a sum of finite values may overflow
-    if not np.isfinite(total) and not np.isfinite(values).all():
-        bad = values[~np.isfinite(values)][0]
-        raise InputError("f", "must have finite values", f"{bad} among the {values.size} asked for")
+    """Return values of a set function, refused if one is NaN, infinite, or so large that sums of some overflow."""
+    if not _are_usable(values):
+        bad = values[~(np.abs(values) <= VALUES.limit)][0]
+        raise InputError("f", _usable_rule(bad), f"{bad} among the {values.size} asked for")
     return values
 
 
+def _are_usable(values: FloatArray) -> bool:
+    return values.size == 0 or bool(values.max() <= VALUES.limit and values.min() >= -VALUES.limit)
+
+
+def _usable_rule(bad: float) -> str:
+    return f"must have values of size at most {VALUES.limit:g}" if np.isfinite(bad) else "must have finite values"
+
+
 def checked_values(f: SetFunction, membership: BoolArray) -> FloatArray:
-    """(K,) values of the subsets in the rows of ``membership`` (K, n), refused if one is no finite number."""
-    values = np.asarray(f.evaluate(membership))
+    """(K,) values of the subsets in the rows of ``membership`` (K, n), refused if one is no usable number."""
+    with np.errstate(over="ignore"):  # what overflows is refused below
+        values = np.asarray(f.evaluate(membership))
     if values.shape != (len(membership),) or values.dtype.kind not in "fiub":
         rule = f"must evaluate to one number for each of {len(membership)} sets"
         raise InputError("f", rule, f"{values.dtype} array of shape {values.shape}")
     values = values.astype(np.float64, copy=False)
-    with np.errstate(all="ignore"):
-        is_fine = bool(np.isfinite(values.sum())) or bool(np.isfinite(values).all())  # a finite sum has finite terms
-    if not is_fine:
-        k = int(np.flatnonzero(~np.isfinite(values))[0])
+    if not _are_usable(values):
+        k = int(np.flatnonzero(~(np.abs(values) <= VALUES.limit))[0])
         shown = f"{values[k]} for the set {np.flatnonzero(membership[k]).tolist()}"
-        raise InputError("f", "must have finite values", shown)
+        raise InputError("f", _usable_rule(values[k]), shown)
     return values
+
+
+def check_total(argument: str, terms: FloatArray) -> FloatArray:
+    """Return what a set function adds up, refused if the sum of the sizes is too large for a value."""
+    with np.errstate(over="ignore"):
+        total = float(np.abs(terms).sum())
+    if total > VALUES.limit:
+        raise InputError(argument, f"must have sizes that add up to at most {VALUES.limit:g}", total)
+    return terms
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -242,7 +259,7 @@ class SizedFunction(SetFunction):
 class TableFunction(SizedFunction):
     """The set function with ``values[mask]`` at the subset whose elements are the set bits of ``mask``.
 
-    ``values`` : (2**n,). InputError : the length is not a power of two, or a value is not finite.
+    ``values`` : (2**n,). InputError : the length is not a power of two, or a value is not finite, or beyond 1e300.
     """
 
     __slots__ = ("values",)
@@ -254,6 +271,8 @@ class TableFunction(SizedFunction):
             raise InputError("values", "must have a power of two as length", length)
         self._n = length.bit_length() - 1
         check_table_size(self._n)
+        if not _are_usable(self.values):
+            raise InputError("values", f"must be of size at most {VALUES.limit:g}", float(np.abs(self.values).max()))
 
     @property
     def has_exact_values(self) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_nonnegative, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import are_exact, finite_values
+from ratt_opt.setfunctions.base import are_exact, check_total, finite_values
 from ratt_opt.setfunctions.decomposition import Overestimator, rounded_up
 from ratt_opt.setfunctions.sums import SumFunction
 
@@ -37,6 +37,8 @@ class BestElements(SumFunction):
     def __init__(self, utility: FloatArray, weights: FloatArray | None = None) -> None:
         self.utility = utility
         super().__init__(len(utility), utility.shape[1], weights)
+        with np.errstate(over="ignore"):
+            check_total("utility", utility.max(axis=0, initial=0.0) * self.weights)
         self._touching: dict[int, IntArray] = {}
 
     def touching(self, part: int) -> IntArray:
@@ -80,7 +82,7 @@ class Coverage(BestElements):
 
     def __init__(self, covers: ArrayLike, item_weights: ArrayLike) -> None:
         self.covers: BoolArray = readonly(np.asarray(covers, dtype=np.bool_))
-        weights = check_nonnegative("item_weights", item_weights, ndim=1)
+        weights = check_total("item_weights", check_nonnegative("item_weights", item_weights, ndim=1))
         if self.covers.ndim != 2 or self.covers.shape[1] != len(weights):
             raise InputError("covers", f"must have shape (n, {len(weights)})", f"shape {self.covers.shape}")
         super().__init__(readonly(self.covers.astype(np.float64)), weights)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +24,26 @@ VALUES = PaceParams(first=1, most=2**14)
 """Sets that are valued at once: however fast they are, their memberships stay in cache."""
 MOST_KEPT_AT_ONCE, MOST_KEPT = 2**12, 2**17
 """Sets whose values are stored: larger batches enumerate, so none comes twice; all stay within some megabytes."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EstimateParams:
+    """How a table's time is known before it is begun: by values of more and more sets at once.
+
+    ``elements`` : tables of fewer are begun at once [1]; ``first``, ``most`` : sets valued together [1]
+    ``seconds`` : a batch that takes longer is the last [s]: more is a better estimate that costs more
+    ``patience`` : a table that seems to take this many times the seconds left is not begun [1]: more begins tables that
+    are not completed, less leaves some that would be
+    """
+
+    elements: int = 16
+    first: int = 4
+    most: int = 2**14
+    seconds: float = 0.1
+    patience: float = 2.0
+
+
+ESTIMATE = EstimateParams()
 
 
 class Metered(SetFunction):
@@ -105,6 +127,8 @@ def table_within(f: SetFunction, budget: Budget) -> FloatArray:
     budget.check()
     if 2.0**f.n > budget.evaluations_left:
         raise OutOfBudget(Stop.EVALUATIONS)
+    if f.n >= ESTIMATE.elements and type(f).table_blocks is SetFunction.table_blocks:
+        _check_time(f, budget)
     is_fast = type(f).table_blocks is not SetFunction.table_blocks  # it knows better than one set after the other
     done, values = 0, np.empty(2**f.n)
     for block in (f if is_fast else Metered(f, budget)).table_blocks():
@@ -115,3 +139,21 @@ def table_within(f: SetFunction, budget: Budget) -> FloatArray:
             if done < len(values):
                 budget.check()
     return values
+
+
+def _check_time(f: SetFunction, budget: Budget) -> None:
+    """Raise ``OutOfBudget`` if a first few values show that a table takes longer than the seconds left."""
+    rows = ESTIMATE.first
+    while budget.seconds_left < np.inf and budget.evaluations_left == np.inf:
+        masks = np.arange(2**f.n - rows, 2**f.n)
+        membership = (masks[:, None] >> np.arange(f.n) & 1).astype(np.bool_)
+        began = monotonic()
+        checked_values(f, membership)
+        budget.evaluate(rows)
+        budget.check()
+        seconds = monotonic() - began
+        if seconds > ESTIMATE.seconds or rows >= ESTIMATE.most:
+            if seconds / rows * 2.0**f.n > ESTIMATE.patience * budget.seconds_left:
+                raise OutOfBudget(Stop.TIME)
+            return
+        rows *= 4

@@ -16,7 +16,7 @@ from ratt_opt._validation import (
     readonly,
 )
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.base import SizedFunction, are_exact
+from ratt_opt.setfunctions.base import SizedFunction, are_exact, check_total
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +34,7 @@ class Modular(SizedFunction):
     is_submodular: ClassVar[bool] = True
 
     def __init__(self, weights: ArrayLike) -> None:
-        self.weights: FloatArray = check_finite("weights", weights, ndim=1)
+        self.weights: FloatArray = check_total("weights", check_finite("weights", weights, ndim=1))
         self._n = len(self.weights)
 
     @property
@@ -60,7 +60,7 @@ class PartitionMatroidRank(SizedFunction):
     is_submodular: ClassVar[bool] = True
 
     def __init__(self, weights: ArrayLike, block: ArrayLike, capacity: ArrayLike) -> None:
-        self.weights: FloatArray = check_nonnegative("weights", weights, ndim=1)
+        self.weights: FloatArray = check_total("weights", check_nonnegative("weights", weights, ndim=1))
         self.capacity: IntArray = readonly(np.asarray(capacity, dtype=np.int64))
         self.block: IntArray = readonly(np.asarray(block, dtype=np.int64))
         if self.block.shape != self.weights.shape:
@@ -96,7 +96,7 @@ class Cut(SizedFunction):
     __slots__ = ("weights",)
 
     def __init__(self, weights: ArrayLike) -> None:
-        self.weights: FloatArray = check_nonnegative("weights", weights, ndim=2)
+        self.weights: FloatArray = check_total("weights", check_nonnegative("weights", weights, ndim=2))
         if self.weights.shape[0] != self.weights.shape[1]:
             raise InputError("weights", "must be square", f"shape {self.weights.shape}")
         if (self.weights != self.weights.T).any():
@@ -119,7 +119,7 @@ class ConcaveOfModular(SizedFunction):
     __slots__ = ("shape", "weights")
 
     def __init__(self, weights: ArrayLike, shape: Callable[[FloatArray], FloatArray] = np.sqrt) -> None:
-        self.weights: FloatArray = check_nonnegative("weights", weights, ndim=1)
+        self.weights: FloatArray = check_total("weights", check_nonnegative("weights", weights, ndim=1))
         self.shape, self._n = shape, len(self.weights)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import time
+from contextlib import suppress
+
 import numpy as np
 import pytest
 
+import ratt_opt as ro
 from ratt_opt import (
     InputError,
     LogDetObjective,
@@ -190,3 +194,70 @@ def test_tiny_ground_sets():
         for check in CHECKS.values():
             assert check(TableFunction(values)) is None
     assert find_monotonicity_violation(TableFunction([1.0, 0.0])).slack == -1.0
+
+
+def huge_functions(size):
+    """One of each class, of values or weights of so large a size."""
+    yield TableFunction, [0.0, size, -size, size]
+    yield ro.Modular, [size, size]
+    yield ro.ConcaveOfModular, [size, size]
+    yield lambda weights: ro.Coverage(np.eye(2, dtype=bool), weights), [size, size]
+    yield ro.FacilityLocation, [[size, size], [size, 0.0]]
+    yield lambda weights: ro.PartitionMatroidRank(weights, [0, 0], [2]), [size, size]
+    yield ro.Cut, [[0.0, size], [size, 0.0]]
+
+
+class Multiple(SetFunction):
+    """The number of elements, times a size."""
+
+    n = 3
+
+    def __init__(self, size):
+        self.size = size
+
+    def evaluate(self, membership):
+        return membership.sum(axis=1) * self.size
+
+
+def test_huge_values_are_refused_in_one_line_and_large_ones_overflow_nowhere():
+    """Warnings are errors here: of 1e308 nothing but the rule is said."""
+    for make, data in huge_functions(1.7e308):
+        with pytest.raises(InputError, match=r"at most 1e\+300"):
+            make(data)
+    for f in [Multiple(2e307), Multiple(1e308)]:
+        for check in CHECKS.values():
+            with pytest.raises(InputError, match=r"f must have (finite values|values of size at most 1e\+300)"):
+                check(f)
+    for f in [make(data) for make, data in huge_functions(1e299)] + [Multiple(1e299)]:
+        for measure in (*CHECKS.values(), ro.total_curvature, ro.submodularity_ratio, ro.generalised_curvature):
+            with suppress(InputError):  # a function that falls has no curvature
+                measure(f)
+
+
+class Slow(SetFunction):
+    """A function of 24 elements in plain Python: a table takes ten minutes."""
+
+    n = 24
+
+    def evaluate(self, membership):
+        return np.array([float(sum(map(bool, row))) ** 0.5 for row in membership])
+
+
+def test_a_table_that_cannot_be_completed_is_not_begun():
+    began = time.process_time()
+    found = find_monotonicity_violation(Slow(), trials=500)
+    assert isinstance(found, NotFound)
+    assert found.trials >= 500
+    assert time.process_time() - began < 3  # half a minute of the default minute went into the table
+
+
+def test_what_rounding_may_explain_is_neither_found_nor_excluded():
+    """The trace of sensors so weak that second differences are rounding of the prior's criterion."""
+    rng = np.random.default_rng(3)
+    rows = rng.normal(size=(4, 1, 1, 2)) * 1e-8
+    f = TraceObjective([np.eye(2) * 3.0], np.swapaxes(rows, -1, -2) @ rows)
+    found = find_submodularity_violation(f, tolerance=0.0)
+    assert not found
+    if found is not None:
+        assert -found.tolerance <= found.smallest_slack < 0
+    assert find_monotonicity_violation(f, tolerance=0.0) is None
