@@ -14,6 +14,7 @@ from typer.core import TyperCommand, TyperGroup
 
 from ratt_opt._version import __version__
 from ratt_opt.cli.attacking import attack
+from ratt_opt.cli.cutting import cuts
 from ratt_opt.cli.exit_codes import BAD_INPUT, INTERRUPTED, NO_OUTPUT, REFUTED, UNDECIDED
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
@@ -65,7 +66,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for command in (demo, new, bound, attack, track, replay, verify, audit, schema):
+for command in (demo, new, bound, attack, cuts, track, replay, verify, audit, schema):
     app.command(cls=_Command)(command)
 
 # Typer's own usage errors (unknown option, missing value, ...) share this base; typer does not export it.

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 
 import networkx as nx
 import numpy as np
@@ -242,3 +244,22 @@ def test_an_interrupt_leaves_a_bracket():
     found = ro.fewest_cuts(nx.cycle_graph(20), 5, budget=outer)
     assert found.lower <= 4 <= found.upper
     assert found.stop is ro.Stop.INTERRUPTED
+
+
+DATA = Path(__file__).parents[3].parent / "shared" / "data" / "graph_partition" / "instances.jsonl"
+
+
+@pytest.mark.skipif(not DATA.exists(), reason="published instances are not beside the repository")
+def test_published_optima():
+    """Some rows of each table; series-parallel graph 0, for which two optima are printed, is 15."""
+    rows = [json.loads(line) for line in DATA.read_text(encoding="utf-8").splitlines()]
+    contradictory = [row for row in rows if len(row["published"]) > 1]
+    for row in [*rows[:60:6], *rows[90::5], *contradictory]:
+        graph = nx.empty_graph(row["n"])
+        graph.add_edges_from(row["links"])
+        links = map(tuple, row["links"])
+        weights = dict(zip(links, row["weights"], strict=True)) if "weights" in row else None
+        found = ro.fewest_cuts(graph, row["size"], weights=weights, sizes=row.get("sizes"))
+        assert found.is_exact
+        assert found.upper in row["published"]
+    assert [found.upper, found.by_prices] == [15, 15]
