@@ -24,6 +24,8 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible, undisturbe
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.solvers.by_values.plan_search import PlanSearch
 from ratt_opt.solvers.maxmin.incumbent import Incumbent, ProvedPlan, break_ties
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.walk import Walk
@@ -109,7 +111,8 @@ def refined(
 
     Parameters
     ----------
-    problem : its objective is a criterion of information matrices
+    problem : criteria of information matrices, or any non-decreasing set function (relied on): its exchanges are valued
+        in batches, from the greedy and the myopic plan, too
     time_limit : seconds, attacks included; ``None`` ends after 200 kicks in vain, or ``max_kicks``. If nothing is left
         for the last exact attacks they take a twelfth more, or a tenth of a second
     start : a plan (N,) to begin with beside RATT's
@@ -119,9 +122,11 @@ def refined(
 
     Raises
     ------
-    InputError : a limit is negative, ``start`` is no plan, or the objective is another set function.
+    InputError : a limit is negative, or ``start`` is no plan.
     """
-    problem = with_unit_prior(check_problem(problem))
+    if not isinstance(check_problem(problem).objective, InformationObjective):
+        return _refined_by_values(problem, Budget.inside(budget, time_limit), start, seed, max_kicks)
+    problem = with_unit_prior(problem)
     kicks_left = None if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
     given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
@@ -165,6 +170,40 @@ def _can_be_worse(incumbent: Incumbent, starts: list[IntArray]) -> bool:
     """Whether less is proved of the plan in hand than one of those it began with may keep."""
     most = max(incumbent.pool.plan_value(plan) for plan in starts)
     return incumbent.proved.lower < most - incumbent.problem.objective.rounding
+
+
+def _refined_by_values(
+    problem: Problem, budget: Budget, start: ArrayLike | Plan | None, seed: int, max_kicks: int | None
+) -> RefinedPlan:
+    """Improve RATT's, the greedy and the myopic plan of any non-decreasing function, known by its values."""
+    most = np.inf if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
+    given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
+    search = PlanSearch(problem, budget, seed=check_integer("seed", seed, low=0))
+    is_patient = max_kicks is None and np.isinf(budget.seconds_left)
+    stop = Stop.HEURISTIC
+    try:
+        search.start(None)
+        search.refine(given, 1 - PROOF_SHARE_OF_ALL, most, PATIENCE if is_patient else np.inf)
+    except OutOfBudget as out:
+        stop = out.stop
+    except KeyboardInterrupt:
+        stop = budget.interrupt()
+    found, ratts = search.result(budget.stop() or stop), search.ratts
+    is_ratts = ratts is not None and np.array_equal(found.elements, ratts.elements)
+    unattacked = problem.team_value(found.elements, Attack())
+    upper = unattacked if found.worst_case is None else found.worst_case.upper
+    return RefinedPlan(
+        elements=found.elements,
+        evaluations=found.evaluations,
+        bait=ratts.bait if ratts is not None and is_ratts else (),
+        alpha_cs=ratts.alpha_cs if ratts is not None and is_ratts else None,
+        lower=found.lower,
+        upper=max(upper, found.lower),
+        unattacked=unattacked,
+        stop=found.stop,
+        kicks=search.kicks,
+        worst_case=found.worst_case,
+    )
 
 
 def _meet(incumbent: Incumbent, plans: list[IntArray]) -> None:

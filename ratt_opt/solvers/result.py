@@ -60,6 +60,8 @@ class MaxMinResult(ByValue, Shown):
     """The attack on ``elements`` that ``lower`` rests on; ``None`` if it was enumerated."""
     proof: UpperProof | None = None
     """What ``upper`` rests on; ``None`` if it was enumerated."""
+    relies_on: tuple[str, ...] = ()
+    """Properties of a set function of your own that the claim takes from its word, such as ``"submodular"``."""
     unattacked: float | None = None
     """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
     ``None`` if plans were enumerated, and for set functions that are no information criterion."""
@@ -91,6 +93,7 @@ class MaxMinResult(ByValue, Shown):
             "posterior_gap",
             "worst_case",
             "unattacked",
+            "relies_on",
         )
         return {name: plain(getattr(self, name)) for name in names}
 

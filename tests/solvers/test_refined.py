@@ -76,8 +76,11 @@ def test_what_it_cannot_take_is_refused_by_name():
         refined(problem, max_kicks=-1)
     with pytest.raises(InputError, match="elements"):
         refined(problem, start=[0])
-    with pytest.raises(InputError, match="objective"):
-        refined(Problem(TableFunction(np.array([0.0, 1.0])), [0], None, 0, 0))
+    own = Problem(TableFunction(np.array([0.0, 1.0])), [0], None, 0, 0)
+    with pytest.raises(InputError, match="elements"):
+        refined(own, start=[1])
+    with pytest.raises(InputError, match="max_kicks"):
+        refined(own, max_kicks=-1)
 
 
 def test_missions_are_planned_by_it_and_are_the_same_again():

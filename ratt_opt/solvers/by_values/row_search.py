@@ -62,6 +62,16 @@ class RowSearch:
         """No plan is worth more, unless it is worth no more than the best plan known."""
         return max(self._bound.upper, self._attacks.lower)
 
+    @property
+    def bound(self) -> float:
+        """The bound of the rows themselves: less than the best plan's worst case only if a property is not kept."""
+        return self._bound.upper
+
+    @property
+    def relies_on_caps(self) -> bool:
+        """Whether groups of some outcomes were left out, as they are worth no more than the best plan."""
+        return not self._only_blinds
+
     def run(self, part: Budget) -> None:
         """Add outcomes and rows as long as they lower the end; raises ``OutOfBudget``."""
         for groups in list(self._attacks.known.values()):

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator, rounded_up
+from ratt_opt.setfunctions.metered import unmetered
+from ratt_opt.solvers.by_values.reliance import refuse_larger_gains
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -18,10 +20,11 @@ __all__ = ["WholeFunction"]
 class WholeFunction(Decomposition):
     """One part that every element touches; bounded by ``f(S) + sum of gains`` (Nemhauser, Wolsey and Fisher 1978)."""
 
-    __slots__ = ("_f",)
+    __slots__ = ("_alone", "_f")
 
     def __init__(self, f: SetFunction) -> None:
         self._f = f
+        self._alone: FloatArray | None = None
 
     @property
     def n_parts(self) -> int:
@@ -54,5 +57,9 @@ class WholeFunction(Decomposition):
         gains = np.zeros(self._f.n)
         others = np.setdiff1d(np.arange(self._f.n), base)
         value = self._f(base.tolist())
-        gains[others] = rounded_up(self._f.extensions(base, others) - value)
+        added = self._f.extensions(base, others) - value
+        if self._alone is None:
+            self._alone = self._f.singletons() - self._f(())
+        refuse_larger_gains(unmetered(self._f), base, others, added, self._alone[others])
+        gains[others] = rounded_up(added)
         return Overestimator(value, gains)

@@ -159,3 +159,48 @@ def test_an_attack_without_cuts_is_enumerated_exactly():
         problem = ro.Problem(f, np.arange(8), None, 3, 0)
         attack = ro.worst_case_attack(problem, np.arange(8))
         assert attack.lower == attack.upper == brute_force_worst_case(problem, np.arange(8))
+
+
+class Claims(ro.SetFunction):
+    """Says that it is submodular, and is not."""
+
+    is_submodular = is_non_decreasing = True
+
+    def __init__(self, n):
+        self.size = n
+
+    @property
+    def n(self):
+        return self.size
+
+    def evaluate(self, membership):
+        count = membership.sum(axis=1).astype(float)
+        return count + np.where(membership[:, 0] & membership[:, 3], 5.0, 0.0)
+
+
+@pytest.mark.parametrize(("robots", "alpha_s"), [(3, 1), (20, 0)])
+def test_a_false_word_on_submodularity_is_refuted_with_its_sets(robots, alpha_s):
+    f = Claims(3 * robots)
+    problem = ro.Problem(f, np.repeat(np.arange(robots), 3), None, alpha_s, 0)
+    with pytest.raises(ro.InputError, match=r"must be submodular, as it says.*A = \[.*B = \["):
+        ro.solve_maxmin(problem, time_limit=20)
+
+
+def test_results_say_what_they_rely_on():
+    problem = facilities(np.random.default_rng(0), 30, 4, 1)
+    found = ro.solve_maxmin(problem, time_limit=0.5)
+    assert found.relies_on == ("non-decreasing", "submodular")
+    assert found.to_dict()["relies_on"] == ["non-decreasing", "submodular"]
+
+
+@pytest.mark.parametrize("alpha_s", [0, 1])
+def test_refined_plans_of_own_functions_are_no_worse_than_first_plans_and_their_exchanges(alpha_s):
+    problem = facilities(np.random.default_rng(3), 15, 3, alpha_s)
+    found = ro.refined(problem, max_kicks=3, time_limit=None)
+    for planner in (ro.greedy, ro.myopic, ro.ratt):
+        assert found.lower >= exchanged(problem, planner(problem).elements) - 1e-9
+    assert found.lower <= worst(problem, found.elements) <= found.upper
+    assert found.unattacked == problem.objective(found.elements.tolist())
+    assert np.array_equal(found.elements, ro.refined(problem, max_kicks=3, time_limit=None).elements)
+    start = ro.random_plan(problem, seed=1)
+    assert ro.refined(problem, start=start, max_kicks=0, time_limit=None).lower >= worst(problem, start) - 1e-9

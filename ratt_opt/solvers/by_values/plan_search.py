@@ -1,0 +1,250 @@
+"""The bracket of the best plan by values: first plans, exchanges, rows, walks and branch and bound."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt._validation import readonly
+from ratt_opt.attack.task import CLOSED_WIDTH
+from ratt_opt.attackers.any_function import metered_problem
+from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt.setfunctions.base import checked_values
+from ratt_opt.setfunctions.metered import unmetered
+from ratt_opt.solvers.by_values.climbing import Climbing
+from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE, PlanAttacks
+from ratt_opt.solvers.by_values.plan_bounds import guarantee_bound, pooling_bound
+from ratt_opt.solvers.by_values.plan_tree import PlanTree
+from ratt_opt.solvers.by_values.reliance import refuse_along, relied_on
+from ratt_opt.solvers.by_values.row_search import RowSearch, parts_of
+from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
+from ratt_opt.solvers.result import MaxMinResult
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attack.task import AttackResult
+    from ratt_opt.problem import Plan, Problem
+
+__all__ = ["PlanSearch", "WalkParams"]
+
+SINGLES_SHARE, PLAN_SHARE, CLIMB_SHARE = 0.7, 0.5, 0.5
+"""Shares of the seconds and values left: for individual values, which plans begin with and first bounds need, for the
+rest of each first plan, and for climbing from plan to plan with attacks on each; then those that their share ended go
+on. Twice the values of the greedy plan do for it. Not tuned."""
+MOST_PLAN_SHARE = 0.95
+"""Share of the values left that a first plan has at most, if it needs more than its share: attacks need the rest."""
+ROUNDS, NODES, SOON_VALUED = 50, 200, 12
+"""Times that plans are climbed to, if no limit ends it before, and nodes of plans in the first turn; if nothing is
+limited, there is one turn, of teams of that many robots at most (80 took 46 s for these nodes, and proved nothing)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkParams:
+    """Effort of the walks from the best plan: more kicks find better plans, rows find better upper ends.
+
+    ``share`` : of the seconds and values left, for a walk; ``rows_share`` : before it, for upper ends by rows
+    ``patience`` : kicks in vain after which the first walk ends; later ones have more
+    ``most_robots`` : robots that a kick moves, from 1 to this
+    """
+
+    share: float = 0.5
+    rows_share: float = 0.5
+    patience: int = 30
+    most_robots: int = 3
+
+
+class PlanSearch:
+    """The bracket, valid at any moment."""
+
+    def __init__(self, problem: Problem, budget: Budget, params: WalkParams | None = None, *, seed: int = 0) -> None:
+        self._given, self._budget, self._params = problem, budget, params or WalkParams()
+        elements = np.array([choice[0] for choice in problem.choices])
+        empty, full = np.zeros((2, problem.objective.n), dtype=np.bool_)
+        full[:] = True
+        ends = checked_values(unmetered(problem.objective), np.array([empty, full]))  # whatever the limits
+        lower, self.upper = float(ends[0]), float(ends[1])
+        self._attacks = PlanAttacks(problem, budget, elements, lower)
+        self._climbing = Climbing(problem, self._attacks, budget)
+        self._rng = np.random.default_rng(seed)
+        self.kicks = 0
+        self.plans: list[IntArray] = []
+        """RATT's, the greedy and the myopic plan, as far as they differ."""
+        self.ratts: Plan | None = None
+        self._ratts: AttackResult | None = None
+        """The attack on RATT's plan, if that was planned to its end."""
+
+    def start(self, alpha_cs: int | None) -> None:
+        """Attack RATT's plan, then the greedy and the myopic one."""
+        single = self._individual(self._budget.part(SINGLES_SHARE))
+        part = self._budget.part(PLAN_SHARE)
+        alpha_cs = alpha_cs_in_share(self._given, part) if alpha_cs is None else alpha_cs
+        for alpha in (self._given.alpha_s + alpha_cs, 0, self._given.n_robots):
+            made, is_whole = self._planned(alpha, single)
+            plan = made.elements
+            if any(np.array_equal(plan, known) for known in self.plans):
+                continue
+            if not self.plans:
+                self._attacks.elements, self.ratts = plan, replace(made, alpha_cs=alpha_cs)
+                found = self._attacks.first(plan)
+                self._ratts = found if is_whole else None
+            else:
+                self._attacks.attack(plan)
+            self.plans.append(plan)
+
+    def learn(self, found: MaxMinResult | None) -> None:
+        """Take over what an enumeration proved before its share ended it."""
+        if found is None:
+            return
+        self._bound(found.upper)
+        if found.lower > self._attacks.lower:
+            self._attacks.elements, self._attacks.lower = found.elements, found.lower
+            self._attacks.worst_case = None
+
+    def run(self, gap: float) -> Stop:
+        """Climb from the first plans, bound all plans, walk on from the best one, then divide all plans."""
+        attacks = self._attacks
+        self._bound(pooling_bound(self._given, attacks, self._budget))
+        if self._ratts is not None and not self._budget.is_over:
+            self._bound(guarantee_bound(attacks.problem, self._ratts.upper))
+        for plan in sorted(self.plans, key=self._climbing.value, reverse=True):
+            if self._climbed(plan, gap):
+                return Stop.CLOSED
+        return Stop.CLOSED if self._bounded_by_rows(gap) else self._divided(gap)
+
+    def _bounded_by_rows(self, gap: float) -> bool:
+        """Lower the upper end by rows of parts, and climb from a plan near the fractional one; whether that closes."""
+        f, part = unmetered(self._given.objective), self._budget.part(self._params.rows_share)
+        asked = metered_problem(self._attacks.problem, part).objective
+        parts = parts_of(f, asked)
+        if parts is None or part.is_over:
+            return self._is_closed(gap)
+        try:
+            rows = RowSearch(self._given, parts, self._attacks, asked.singletons() if f.is_submodular else None)
+            try:
+                rows.run(part)
+            finally:
+                self._bound(rows.upper if rows.relies_on_caps else rows.bound)
+        except OutOfBudget:
+            self._budget.check()
+            return self._is_closed(gap)
+        return self._is_closed(gap) or self._climbed(rows.rounded(), gap)
+
+    def _climbed(self, plan: IntArray, gap: float) -> bool:
+        """Climb from one plan until attacks teach nothing; whether that closes the bracket."""
+        current = plan
+        for _ in range(ROUNDS):
+            known = len(self._attacks.known)
+            current = self._improved(current, gap)
+            for one in (plan, current):
+                self._attacks.go_on(one)
+            if self._is_closed(gap) or len(self._attacks.known) == known:
+                break
+        return self._is_closed(gap)
+
+    def refine(self, plans: list[IntArray], share: float, most_kicks: float, patience: float) -> None:
+        """Climb from the first plans and others, and walk on from the best; no bounds on all plans."""
+        for plan in plans:
+            self._attacks.attack(plan)
+        for plan in [*plans, *self.plans]:
+            self._climbed(plan, 0.0)
+        self._walked(patience, 0.0, share, most_kicks)
+        self._attacks.go_on(self._attacks.elements)
+
+    def _walked(self, patience: float, gap: float, share: float | None = None, most: float = np.inf) -> None:
+        """Kick the best plan and climb until that is in vain for some kicks (Lourenço, Martin and Stützle 2003)."""
+        params, in_vain, until = self._params, 0, self.kicks + most
+        part = self._budget.part(params.share if share is None else share)
+        while not (self._is_closed(gap) or part.is_over) and in_vain < patience and self.kicks < until:
+            self.kicks += 1
+            before, robots = self._attacks.lower, int(self._rng.integers(1, params.most_robots + 1))
+            climbed = self._climbing.climbed(self._climbing.kicked(self._attacks.elements, self._rng, robots), part)
+            if not part.is_over and self._climbing.value(climbed) > before:
+                self._attacks.attack(climbed, part.part(ATTACK_SHARE))
+            in_vain = 0 if self._attacks.lower > before else in_vain + 1
+
+    @property
+    def _is_limited(self) -> bool:
+        budget = self._budget
+        return min(budget.seconds_left, budget.evaluations_left, budget.max_nodes or np.inf) < np.inf
+
+    def _divided(self, gap: float) -> Stop:
+        """Walk and divide the plans that are left in turns, each twice as long as before; once if nothing is limited.
+
+        A turn's length is counted in values and nodes, so that the result is the same on every run.
+        """
+        budget, tree = self._budget, PlanTree(self._given, self._attacks, self._climbing.worth, self.upper)
+        is_limited, patience = self._is_limited, self._params.patience
+        nodes = NODES if is_limited or self._given.n_robots <= SOON_VALUED else 0
+        while True:
+            begun = budget.evaluations
+            self._walked(patience, gap)
+            until, last = 2 * budget.evaluations - begun, budget.nodes + nodes
+            while not (self._is_closed(gap) or tree.is_finished or budget.stop() or budget.nodes >= last):
+                tree.divide(budget)
+                self._bound(tree.upper)
+                if budget.nodes >= last and budget.evaluations < until and is_limited:
+                    last += 1
+            if self._is_closed(gap):
+                return Stop.CLOSED
+            if (stop := budget.stop()) or tree.is_finished or not is_limited:
+                return stop or Stop.HEURISTIC
+            patience, nodes = 2 * patience, 2 * nodes
+
+    def _bound(self, upper: float) -> None:
+        attacks, f = self._attacks, unmetered(self._given.objective)
+        if f.is_submodular and upper < attacks.lower - f.least_improvement(attacks.lower, terms=4):
+            refuse_along(f, np.asarray(attacks.elements))
+        self.upper = max(min(self.upper, upper), attacks.lower)
+
+    def _is_closed(self, gap: float) -> bool:
+        width = max(gap, CLOSED_WIDTH) * abs(self.upper) + self._given.objective.rounding
+        return self.upper - self._attacks.lower <= width
+
+    def _improved(self, current: IntArray, gap: float) -> IntArray:
+        """Climb from a plan, attack the one that is reached, climb on, until an attack teaches nothing."""
+        part, known = self._budget.part(CLIMB_SHARE), -1
+        while known < len(self._attacks.known) and not (self._is_closed(gap) or part.is_over):
+            known = len(self._attacks.known)
+            current = self._climbing.climbed(current, part)
+            if not part.is_over:
+                self._attacks.attack(current, part.part(ATTACK_SHARE))
+        return current
+
+    def _planned(self, alpha: int, single: FloatArray) -> tuple[Plan, bool]:
+        """Bait for ``alpha`` robots, greedy for the others, as far as a share lasts; whether it lasted."""
+        # The greedy algorithm values at most this many sets: half of all pairs of an element and a round.
+        values = float(self._given.objective.n) * max(self._given.n_robots - alpha, 0) / 2
+        part = self._budget.part(
+            max(PLAN_SHARE, min(values / max(self._budget.evaluations_left, 1.0), MOST_PLAN_SHARE))
+        )
+        asked = metered_problem(self._attacks.problem, part)
+        return bait_and_greedy(asked, alpha, part, single), bool(np.isfinite(single).all()) and not part.is_over
+
+    def _individual(self, part: Budget) -> FloatArray:
+        """(E,) individual values, ``-inf`` if the part does not do for it: of as many elements of each robot."""
+        objective, choices = metered_problem(self._attacks.problem, part).objective, self._given.choices
+        single, nothing = np.full(objective.n, -np.inf), np.array([], dtype=np.int64)
+        try:
+            for k in range(max(map(len, choices))):
+                elements = np.array([choice[k] for choice in choices if len(choice) > k])
+                single[elements] = objective.extensions(nothing, elements)
+        except OutOfBudget as out:
+            if out.stop is Stop.INTERRUPTED:
+                raise
+        return single
+
+    def result(self, stop: Stop) -> MaxMinResult:
+        """What is known."""
+        attacks = self._attacks
+        return MaxMinResult(
+            elements=readonly(np.asarray(attacks.elements)),
+            lower=attacks.lower,
+            upper=max(self.upper, attacks.lower),
+            stop=stop,
+            evaluations=self._budget.evaluations,
+            nodes=self._budget.nodes,
+            worst_case=attacks.worst_case,
+            relies_on=relied_on(unmetered(self._given.objective)),
+        )
