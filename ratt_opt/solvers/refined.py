@@ -61,7 +61,7 @@ class RefinedParams:
     """
 
     last_share: float = 0.08
-    last_seconds: float = 0.1
+    last_seconds: float = 0.4
     least_share: float = 0.5
 
     def last(self, own: Budget) -> float:
@@ -114,7 +114,7 @@ def refined(
     problem : criteria of information matrices, or any non-decreasing set function (relied on): its exchanges are valued
         in batches, from the greedy and the myopic plan, too
     time_limit : seconds, attacks included; ``None`` ends after 200 kicks in vain, or ``max_kicks``. If nothing is left
-        for the last exact attacks they take a twelfth more, or a tenth of a second
+        for the last exact attacks they take up to 0.4 s more (half of a shorter limit)
     start : a plan (N,) to begin with beside RATT's
     seed : integer >= 0, of the kicks
     max_kicks : with it, and no limit of time, the plan is the same on every run
