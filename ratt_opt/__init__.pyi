@@ -54,6 +54,7 @@ from .attackers.criticality import (
     breaking_budgets as breaking_budgets,
     BreakingBudget as BreakingBudget,
 )
+from .attackers.robot_choice import BestRobots as BestRobots, robots_to_protect as robots_to_protect
 from .attackers.link_choice.best_links import (
     links_to_protect as links_to_protect,
     links_to_add as links_to_add,

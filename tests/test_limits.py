@@ -38,6 +38,7 @@ ROWS = {
     "generalised_curvature of a plan": lambda c, t: ro.generalised_curvature(c.f, plan=c.plan[:22], time_limit=t),
     "instance_bound": lambda c, t: ro.instance_bound(c.problem, c.plan, c=c.total, time_limit=t),
     "links_to_add": lambda c, t: ro.links_to_add(c.on_graph, c.plan, 3, time_limit=t),
+    "robots_to_protect": lambda c, t: ro.robots_to_protect(c.on_graph, c.plan, 2, time_limit=t),
     "links_to_protect": lambda c, t: ro.links_to_protect(c.on_graph, c.plan, 3, time_limit=t),
     "nonrobust_optimum": lambda c, t: ro.nonrobust_optimum(c.problem, time_limit=t),
     "relaxation_bound": lambda c, t: ro.relaxation_bound(c.problem, [c.result.worst_case.attack], time_limit=t),

@@ -6,12 +6,16 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Self
 
+import numpy as np
+
 from ratt_opt._validation import check_number
 from ratt_opt.attack.task import PlanValues
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics import PartialAttack, team_values
 from ratt_opt.budget import Budget, Stop, interruptible
+from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
+from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -151,13 +155,27 @@ class BreakingBudgets(tuple[BreakingBudget, ...]):
         return tuple(self), self.stop
 
 
+def _goal(problem: Problem, value: float | None, rms: float | None) -> float:
+    """The value below which a plan is broken. InputError : not exactly one is given, or no trace for an ``rms``."""
+    if (value is None) == (rms is None):
+        raise InputError("value", "must be given, or rms, not both", value)
+    if rms is None:
+        return check_number("value", value)
+    objective = problem.objective
+    if not isinstance(objective, InformationObjective) or objective.name != "trace":
+        raise InputError("rms", "needs the trace as objective", getattr(objective, "name", type(objective).__name__))
+    weights = np.ones(objective.n_targets) if objective.weights is None else objective.weights
+    return float(objective.prior_criterion - weights.sum() * check_number("rms", rms, low=0.0) ** 2)
+
+
 @interruptible
 @Step("the smallest budgets that break the plan")
 def breaking_budgets(
     problem: Problem,
     elements: ArrayLike,
-    value: float,
+    value: float | None = None,
     *,
+    rms: float | None = None,
     max_nodes: int | None = None,
     time_limit: float | None = None,
     budget: Budget | None = None,
@@ -171,6 +189,8 @@ def breaking_budgets(
     Parameters
     ----------
     value : [unit of the objective]
+    rms : instead of a value, the error that an attack shall exceed: root of the weighted mean over the targets of the
+        traces of their posterior covariances [m]; of the trace only
     max_nodes, time_limit, budget : as for :func:`criticality_ranking`; once time is up no further number of robots is
         looked at. ``stop`` of the result says so, or why an attack on some number of robots was left open; if the
         fewest links of a budget are not proved, its ``is_proved`` is False
@@ -180,7 +200,7 @@ def breaking_budgets(
     InputError : the plan is not one element per robot, ``value`` is not finite, or a budget is not a number >= 0.
     """
     plan = problem.check_plan(elements)
-    goal = check_number("value", value)
+    goal = _goal(problem, value, rms)
     own = Budget.inside(budget, time_limit)
     found: list[BreakingBudget] = []
     undecided: Stop | None = None

@@ -34,6 +34,10 @@ def attack(
         float | None,
         typer.Option("--below", help="Also find the smallest budgets that push the plan below this value."),
     ] = None,
+    rms: Annotated[
+        float | None,
+        typer.Option("--rms", help="Like --below, by accuracy: budgets that push the RMS error above this [m]."),
+    ] = None,
     protect: Annotated[
         int, typer.Option("--protect", min=0, help="Number of links to choose whose protection gains most.")
     ] = 0,
@@ -71,7 +75,9 @@ def attack(
     within: dict[str, Any] = {"time_limit": time_limit, "budget": budget}
     results = attack_survey(problem, elements, seed=seed, **within)
     critical = _found(budget, lambda: criticality_ranking(problem, elements, **within)[:rank] if rank else None)
-    budgets = None if below is None else _found(budget, lambda: breaking_budgets(problem, elements, below, **within))
+    budgets = None
+    if below is not None or rms is not None:
+        budgets = _found(budget, lambda: breaking_budgets(problem, elements, below, rms=rms, **within))
     links: dict[str, BestLinks | None] = {}
     if protect:
         links["protect"] = _found(budget, lambda: links_to_protect(problem, elements, protect, **within))

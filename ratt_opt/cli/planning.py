@@ -75,6 +75,10 @@ def bound(
         Literal["none", "quick", "full"],
         typer.Option("--guarantees", help="What was sure before planning: left out, in two seconds, or in full."),
     ] = "quick",
+    motion: Annotated[
+        str | None,
+        typer.Option("--motion", help="Of targets: plan the first step of a mission with it.", show_default=False),
+    ] = None,
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
     as_latex: LatexFlag = False,
@@ -87,7 +91,7 @@ def bound(
 
     source = load_input(file)
     shown = {"as_json": as_json, "as_latex": as_latex}
-    _bound(source, out, objective, time_limit, gap, guarantees, certificate=certificate, **shown)
+    _bound(source, out, objective, time_limit, gap, guarantees, motion=motion, certificate=certificate, **shown)
 
 
 def _bound(
@@ -98,6 +102,7 @@ def _bound(
     gap: float = GAP,
     guarantees: str = "quick",
     *,
+    motion: str | None = None,
     certificate: bool,
     as_json: bool,
     as_latex: bool,
@@ -105,6 +110,7 @@ def _bound(
     from ratt_opt._files import output_directory
     from ratt_opt.main_job.bound import CERTIFICATE_SHARE
     from ratt_opt.main_job.bound import bound as main_job
+    from ratt_opt.missions.world import MissionModel
     from ratt_opt.report.tables import report_tables
     from ratt_opt.report.write import FILES, write_numbers
     from ratt_opt.solvers.maxmin.solve import check_limits
@@ -114,7 +120,8 @@ def _bound(
     check_limits(gap, time_limit)
     began = monotonic()
     searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
-    report = main_job(source, objective=objective, time_limit=searching, gap=gap, guarantees=guarantees)
+    model = None if motion is None else MissionModel(motion=motion, objective=objective)
+    report = main_job(source, objective=objective, model=model, time_limit=searching, gap=gap, guarantees=guarantees)
     left = max(0.0, time_limit - (monotonic() - began))
     wanted = certificate and not report.interrupted
     with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report"):

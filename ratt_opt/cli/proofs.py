@@ -24,6 +24,10 @@ def verify(
         Path | None, typer.Option("--problem", help="Scenario or information file the certificate must be about.")
     ] = None,
     objective: Annotated[Objective, typer.Option("--objective", help="Criterion, with --problem.")] = "trace",
+    motion: Annotated[
+        str | None,
+        typer.Option("--motion", help="Of the targets, as given to bound; with --problem.", show_default=False),
+    ] = None,
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds before it counts as undecided.")] = SECONDS,
     verified: Annotated[
         bool, typer.Option("--verified", help="Ask ratt-check too, the checker extracted from its Coq proof.")
@@ -54,6 +58,11 @@ def verify(
         from ratt_opt.scenario.files import load_input
 
         given = load_input(problem)
+        if motion is not None:
+            from ratt_opt.missions.first_step import first_step
+            from ratt_opt.missions.world import MissionModel
+
+            given = first_step(given, MissionModel(motion=motion, objective=objective))
         expected = differences(given, objective)
     with Step("checking the certificate") as step, watched(step.say):
         document = load(file)

@@ -30,6 +30,7 @@ from ratt_opt.problem import Plan, Problem
 from ratt_opt.running.progress import Step
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.planner_world import scenario_world
+from ratt_opt.scenario.remarks import scenario_remarks
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
 from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks, random_plan
@@ -155,7 +156,8 @@ def bound(
         raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
     _check_planners(planners or {})
     began = datetime.now(UTC)
-    problem, source = _problem_of(scenario_or_problem, objective, model)
+    given = scenario_or_problem
+    problem, source = _problem_of(given, objective, model)
     whole, steps = Budget(time_limit), Steps(progress)
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
@@ -163,7 +165,7 @@ def bound(
         single = problem.objective.singletons()
         alpha_cs, robust = _planned(problem, single, budget)
         baselines = _kept(budget, lambda: tuple(_baselines(problem, single, budget)))
-        seen = _world_of(scenario_or_problem, model, problem) if planners else None
+        seen = _world_of(given, model, problem) if planners else None
         baselines += tuple(_own_plans(problem, planners or {}, seen, budget))
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
@@ -200,7 +202,7 @@ def bound(
         views=views,
         seeds={"random": RANDOM_SEED},
         interrupted=whole.stop() is Stop.INTERRUPTED,
-        remarks=_remarks(problem),
+        remarks=_remarks(problem) + (scenario_remarks(given) if isinstance(given, Scenario) else ()),
     )
     return _delivered(report.with_certificate(proof), failure)
 
@@ -351,6 +353,8 @@ def _remarks(problem: Problem) -> tuple[str, ...]:
     if silent.any():
         robots = [i for i, own in enumerate(problem.choices) if silent[own].all()]
         none = f"; none of robot {', '.join(map(str, robots))} tells anything: check its sensor" if robots else ""
+        if silent.all():
+            none = ": no sensor sees any target, so every plan is worth 0"
         found.append(f"{silent.sum()} of {counted(f.n, 'element')} tell nothing about any target{none}")
     if f.repaired:
         mended = f"negative eigenvalues of {f.repaired} of the {f.n * f.n_targets} information matrices were set to 0"

@@ -351,6 +351,13 @@ class Scenario(ProblemRecord):
             if error.argument.startswith("information["):
                 where = f"sensor of robots[{self.robot[about[0]]}] for targets[{about[1]}].covariance"
                 raise InputError(where, error.rule, error.value) from None
+            if (
+                error.argument == "alpha_c"
+                and self.communication_range is not None
+                and not near_pairs(self.poses, self.communication_range)
+            ):
+                rule = f"{error.rule}, as no two robots are within {self.communication_range:g} m (communication_range)"
+                raise InputError(error.argument, rule, error.value) from None
             raise
 
     def _check_ranges(self) -> None:
