@@ -299,7 +299,7 @@ def _worst(found: RealSearch) -> WorstRecord | None:
 
 
 def whole_record(entry: Entry, worst_for: str, decided: Sequence[Decided]) -> WholeRecord:
-    """What whole instances say of one refuted line."""
+    """Record the decisions about one refuted line among whole instances."""
     found = decided[-1].instance if decided else None
     return {
         "label": entry.label,

@@ -1,4 +1,4 @@
-"""Whether an attack is a worst one and a plan optimal, as choices between linear inequalities.
+"""Requirements that make an attack a worst one and a plan optimal, as choices between linear inequalities.
 
 Let ``opt`` be a number. The compared plan is optimal with worst case ``opt`` if (1) every outcome leaves it a group
 worth at least ``opt``, and (2) every other plan has an outcome that leaves all its groups at most ``opt``. A* is a
@@ -30,7 +30,7 @@ OPT = Linear.of("opt")
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """At least one of the alternatives holds, each a conjunction of inequalities."""
+    """Alternatives of which at least one holds, each a conjunction of inequalities."""
 
     alternatives: tuple[tuple[Inequality, ...], ...]
 

@@ -37,7 +37,7 @@ __all__ = ["Decided", "WholeSearch", "decide_team", "smallest_instance"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WholeSearch:
-    """How far whole instances are looked for.
+    """Limits of the search for whole instances.
 
     ``largest`` : robots at most; a robot more has four times as many sets.
     ``programs`` : linear programs a team at most; a team that needs more is left undecided.
@@ -98,7 +98,7 @@ def decide_team(sized: SizedClaim, whole: WholeTeam, worst_for: Side, search: Wh
 
 
 def _is_closed(node: Claim) -> bool:
-    """Whether the line is proved from the premises, for all curvatures or for those of the grid."""
+    """Try to prove the line from the premises, for all curvatures or for those of the grid."""
     if find_proof(node, feasible=False) is not None:
         return True
     return all(find_proof(node, feasible=False, curvature=c) is not None for c in curvatures_tried(node))

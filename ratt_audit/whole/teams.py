@@ -74,7 +74,7 @@ class WholeTeam:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where a chain's group stands: its pattern, the distribution of blinded robots, and whether it is V1."""
+    """Place of a chain's group: its pattern, the distribution of blinded robots, and whether it is V1."""
 
     pattern: int
     distribution: int
@@ -88,7 +88,7 @@ class _Place:
         return _Place(int(digits[1]), distribution, is_first=digits.endswith("v1"))
 
     def fits(self, sized: SizedClaim, elsewhere: int) -> bool:
-        """Whether blinding ``elsewhere`` robots outside the group, too, is what the distribution says."""
+        """Tell whether blinding ``elsewhere`` robots outside the group, too, is what the distribution says."""
         assert sized.team is not None
         inside, second = len(sized.attacked), sum(r.startswith("x") for r in sized.team.greedy)
         if not self.is_first:
