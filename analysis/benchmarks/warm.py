@@ -16,8 +16,10 @@ import numpy as np
 from analysis.tables import print_table
 from ratt_opt import random_scenario, solve_maxmin
 from ratt_opt.bounds.cuts import combined_bound, tangent_cut
+from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, WinnerBranch
+from ratt_opt.solvers.maxmin.solve import proved_by_tangents
 
 if TYPE_CHECKING:
     from ratt_opt import MaxMinResult, Problem, Scenario
@@ -89,13 +91,18 @@ def leaves_that_close(problem: Problem, proof: UpperProof, level: float, gap: fl
     return (np.array(bounds) - level) / abs(level) - gap
 
 
+def _solved(problem: Problem, gap: float) -> MaxMinResult:
+    """The best plan, its upper end proved by tangents."""
+    return proved_by_tangents(problem, solve_maxmin(problem, gap=gap), Budget())
+
+
 def measure_leaves(scenario: Scenario, name: str, steps: int, gap: float) -> list[dict[str, Any]]:
     """What the proof of each step still proves of the next one."""
-    before, rows = solve_maxmin(scenario.problem(name), gap=gap), []
+    before, rows = _solved(scenario.problem(name), gap), []
     for step in range(steps):
         earlier = scenario.problem(name)
         scenario = moved(scenario, before.elements)
-        found = solve_maxmin(scenario.problem(name), gap=gap)
+        found = _solved(scenario.problem(name), gap)
         if before.proof is not None:
             spare = -leaves_that_close(earlier, before.proof, before.lower, gap)
             missing = leaves_that_close(scenario.problem(name), before.proof, found.lower, gap)

@@ -24,6 +24,7 @@ from ratt_opt.running.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
+from ratt_opt.solvers.maxmin.solve import proved_by_tangents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -144,9 +145,12 @@ def certify(
     """
     if result.proof is None:
         raise InputError("result", "must carry a proof (from solve_maxmin)", result.stop)
-    with limited(Budget.inside(budget, time_limit).seconds_left):
+    own = Budget.inside(budget, time_limit)
+    proof = proved_by_tangents(problem, result, own).proof
+    assert proof is not None
+    with limited(own.seconds_left):
         tick()
-        record = upper_record(problem, result.proof)
+        record = upper_record(problem, proof)
         return write_certificate(
             problem,
             result.elements,

@@ -80,7 +80,8 @@ def solve_by_columns(
     while True:
         part = replace(problem, objective=objective.restricted_to(kept), robot=problem.robot[kept])
         within = Budget.inside(budget, time_limit and budget.seconds_left)
-        found = search_in_all_coordinates(part, within, INNER_SHARE * gap, in_depth=False)  # a cover has no prices
+        # Covers and inequalities of base sets have no prices.
+        found = search_in_all_coordinates(part, within, INNER_SHARE * gap, in_depth=False, by_rows=False)
         nodes, evaluations = nodes + found.nodes, evaluations + found.evaluations
         fresh: IntArray = np.zeros(0, dtype=np.int64)
         if found.proof is not None:

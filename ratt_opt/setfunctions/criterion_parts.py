@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.setfunctions.planar_levels import PlanarLevels
 
-__all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent"]
+__all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent", "TargetTangents"]
 
 ROUNDING = 1e-12
 """Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
@@ -37,6 +37,20 @@ class Tangent:
 
     slope: FloatArray
     offset: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TargetTangents:
+    """``value_j(L) <= offset_j + <slope_j, L>`` for each target ``j`` and every positive definite ``L``.
+
+    ``slope`` : (M, d, d), up to rounding; ``size`` : (M, d, d) sizes of what each entry of it adds up
+    ``offset`` : (M,), up to rounding; ``scale`` : (M,) sizes of what it adds up
+    """
+
+    slope: FloatArray
+    size: FloatArray
+    offset: FloatArray
+    scale: FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,6 +194,10 @@ class CriterionParts(ProofParts):
         everything = before - self.criterion(self.prior_information + self.information.sum(axis=0))
         return np.tile(everything * (1 + ROUNDING) + slack, (self.n, 1))
 
+    def target_values(self, posterior_information: FloatArray) -> FloatArray:
+        """Each target's value, for a criterion that is the sum of them: (..., M, d, d) -> (..., M)."""
+        return np.asarray(self._baseline - self.criterion(posterior_information))
+
     @property
     def prior_criterion(self) -> float | None:
         """The criterion before any measurement, if it is a size (trace, max-eigenvalue) and not a logarithm."""
@@ -207,6 +225,17 @@ class CriterionParts(ProofParts):
         """
         slope = self.gradient(point)
         return Tangent(slope, float(self.value(point)) - float(np.einsum("jkl,jkl->", slope, point)))
+
+    def target_tangents(self, point: FloatArray) -> TargetTangents:  # noqa: ARG002
+        """Tangents of each target's value at ``point`` (M, d, d), for a criterion that is the sum of them."""
+        raise lacking(self, "target_tangents(point)", "tangents of each target's value")
+
+    def marginals_beyond(self, base: FloatArray, information: FloatArray) -> FloatArray:  # noqa: ARG002
+        """(K, E, M) no marginal of an element is larger at any information that is no less than ``base``.
+
+        ``base`` : (K, M, d, d) positive definite; ``information`` : (E, M, d, d) of elements, positive semidefinite
+        """
+        raise lacking(self, "marginals_beyond(base, information)", "largest marginals beyond a set")
 
     def cut_values(self, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:  # noqa: ARG002
         """What tangents for these ``targets`` bound, up to a constant: (K, ..., M, d, d) -> (K, ...)."""

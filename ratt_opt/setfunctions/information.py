@@ -166,6 +166,15 @@ class InformationObjective(CriterionParts):
         restricted._singletons = restricted._negative_parts = None
         return restricted
 
+    def of_target(self, target: int) -> Self:
+        """The same criterion of one target alone."""
+        own, one = slice(target, target + 1), copy(self)
+        one.prior, one.prior_information = readonly(self.prior[own]), readonly(self.prior_information[own])
+        one.information, one.weights = readonly(self.information[:, own]), readonly(self.weights[own])
+        one._baseline, one.condition = readonly(self._baseline[own]), readonly(self.condition[own])
+        one._singletons = one._inverse_error = None
+        return one
+
     def with_information(self, information: ArrayLike) -> Self:
         """The same criterion of other elements: (E, M, d, d), checked."""
         other = copy(self)
@@ -198,6 +207,11 @@ class InformationObjective(CriterionParts):
         """(M, d, d) ``Lambda(S)`` of the given distinct elements, added in ascending order."""
         stacked = np.concatenate([self.prior_information[None], self.information[np.sort(subset)]])
         return np.asarray(np.add.reduce(stacked, axis=0))
+
+    def posterior_mixture(self, share: FloatArray) -> FloatArray:
+        """(M, d, d) posterior information of fractional elements, ``share`` (n,)."""
+        chosen = np.flatnonzero(share)
+        return np.asarray(self.prior_information + np.tensordot(share[chosen], self.information[chosen], axes=1))
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, logdet_gradient
-from ratt_opt.setfunctions.criterion_parts import VALUE_ROUNDING, SeparableMinorant, Tangent
+from ratt_opt.setfunctions.criterion_parts import VALUE_ROUNDING, SeparableMinorant, Tangent, TargetTangents
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
@@ -70,6 +70,22 @@ class LogDetObjective(InformationObjective):
         # The criterion is -w logdet(Lambda), hence value = sum_j baseline_j + w_j logdet(Lambda_j).
         logdets = np.linalg.slogdet(y)[1] + self.dimension
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
+
+    def target_tangents(self, point: FloatArray) -> TargetTangents:
+        """The same target by target, with ``Y = R R'`` for a triangular ``R``, whose determinant is a product."""
+        root = np.linalg.cholesky(symmetric_inverse(point))
+        weights, turned = self.weights[:, None, None], np.swapaxes(root, -1, -2)
+        logarithms = 2 * np.log(np.diagonal(root, axis1=-2, axis2=-1))
+        return TargetTangents(
+            slope=weights * (root @ turned),
+            size=weights * (abs(root) @ abs(turned)),
+            offset=self._baseline - self.weights * (logarithms.sum(axis=-1) + self.dimension),
+            scale=abs(self._baseline) + self.weights * (abs(logarithms).sum(axis=-1) + self.dimension),
+        )
+
+    def marginals_beyond(self, base: FloatArray, information: FloatArray) -> FloatArray:
+        """Gains diminish: those at the base itself."""
+        return np.asarray(self.criterion(base)[:, None] - self.criterion(base[:, None] + information))
 
     def conic_value(self, posterior: Sequence[Any]) -> Any:
         """``sum_j w_j [logdet(prior_j) + log_det(L_j)]`` in cvxpy."""

@@ -52,6 +52,12 @@ class StateCriterion(InformationObjective):
         self.output = _check_output(output, prior) if is_of_part else None
         super().__init__(prior, information, weights)
 
+    def of_target(self, target: int) -> Self:
+        """The same criterion of one target alone."""
+        one = super().of_target(target)
+        one.output = None if self.output is None else readonly(self.output[target : target + 1])
+        return one
+
     def error_scale(self, size: FloatArray) -> FloatArray:
         """(..., M) no less than the weighted trace of what counts of such a covariance: ``w_j |C_j|^2 size_j``."""
         squares = float(self.dimension) if self.output is None else np.square(self.output).sum(axis=(-2, -1))

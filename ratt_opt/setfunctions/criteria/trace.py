@@ -32,7 +32,7 @@ import numpy as np
 from ratt_opt.setfunctions.criteria.output_covariances import output_traces
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
-from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent
+from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent, TargetTangents
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
 
 if TYPE_CHECKING:
@@ -98,6 +98,31 @@ class TraceObjective(StateCriterion):
         traces = np.trace(y, axis1=-2, axis2=-1)
         slope = self.weights[:, None, None] * (y @ y)
         return Tangent(slope, float((self._baseline - 2 * self.weights * traces).sum()))
+
+    def target_tangents(self, point: FloatArray) -> TargetTangents:
+        """The same target by target."""
+        y = symmetric_inverse(point)
+        traces = 2 * self.weights * np.trace(y, axis1=-2, axis2=-1)
+        weights, sizes = self.weights[:, None, None], abs(y)
+        return TargetTangents(
+            slope=weights * (y @ y),
+            size=weights * (sizes @ sizes),
+            offset=self._baseline - traces,
+            scale=abs(self._baseline) + abs(traces),
+        )
+
+    def marginals_beyond(self, base: FloatArray, information: FloatArray) -> FloatArray:
+        """Those at the base, or at an extreme point of lower rank below its covariance."""
+        alone = self.criterion(base)[:, None] - self.criterion(base[:, None] + information)
+        values, vectors = np.linalg.eigh(symmetric_inverse(base))
+        root = (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]) @ np.swapaxes(vectors, -1, -2)
+        q = np.linalg.eigvalsh(root[:, None] @ information @ root[:, None])[..., 1:].clip(0.0)
+        lower_rank = self.weights * self._largest_output(base)[:, None] * (q / (1 + q)).sum(axis=-1)
+        return np.asarray(np.maximum(alone, lower_rank) * (1 + MARGIN))
+
+    def _largest_output(self, base: FloatArray) -> FloatArray:
+        """(..., M) the largest eigenvalue of the covariance of what counts."""
+        return np.asarray(np.linalg.eigvalsh(symmetric_inverse(base))[..., -1])
 
     def conic_value(self, posterior: Sequence[Any]) -> Any:
         """``sum_j w_j [tr(prior_j) - tr_inv(L_j)]`` in cvxpy."""
@@ -193,6 +218,7 @@ class OutputTraceObjective(TraceObjective):
     error_scale = StateCriterion.error_scale
     target_criterion = InformationObjective.criterion_of_one
     marginal_minorant = TraceObjective.marginal_minorant
+    marginals_beyond = TraceObjective.marginals_beyond
 
     @property
     def output_square(self) -> FloatArray:
@@ -217,6 +243,23 @@ class OutputTraceObjective(TraceObjective):
         """``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for *any* ``Y``: an inexact inverse costs strength only."""
         value = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, self._fenchel(point))
         return Tangent(self.gradient(point), float((self._baseline - value).sum()))
+
+    def target_tangents(self, point: FloatArray) -> TargetTangents:
+        """The same target by target."""
+        y, weights = self._fenchel(point), self.weights[:, None, None]
+        values = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, y)
+        sizes = 2 * self.weights * np.einsum("mqd,mdq->m", abs(self.output), abs(y))
+        return TargetTangents(
+            slope=weights * (y @ np.swapaxes(y, -1, -2)),
+            size=weights * (abs(y) @ abs(np.swapaxes(y, -1, -2))),
+            offset=self._baseline - values,
+            scale=abs(self._baseline) + sizes,
+        )
+
+    def _largest_output(self, base: FloatArray) -> FloatArray:
+        """(..., M) the largest eigenvalue of the covariance of what counts."""
+        outputs = self.output @ symmetric_inverse(base) @ np.swapaxes(self.output, -1, -2)
+        return np.asarray(np.linalg.eigvalsh(outputs)[..., -1])
 
     def conic_value(self, posterior: Sequence[Any]) -> Any:
         """``sum_j w_j [tr(C prior_j C') - sum_q c_q' L_j^{-1} c_q]`` in cvxpy."""

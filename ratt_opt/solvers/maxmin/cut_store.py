@@ -6,17 +6,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.bounds.cuts import combined_bound, tangent_cut
+from ratt_opt.bounds.cuts import GroupCut, combined_bound, tangent_cut
 from ratt_opt.solvers.maxmin.proof import TangentCut
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.bounds.cuts import GroupCut
     from ratt_opt.solvers.maxmin.elements import Task
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
     from ratt_opt.solvers.maxmin.proof import Leaf
+    from ratt_opt.solvers.maxmin.rows.pool import Row
+    from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 
 __all__ = ["CutStore"]
 
@@ -25,12 +26,13 @@ class CutStore:
     """Cut ``k`` bounds the team value under outcome ``outcomes[k]`` if its group ``groups[k]`` wins.
 
     Cuts are never removed: leaves refer to them. Scores are stored element by element, because a
-    relaxed plan has few elements.
+    relaxed plan has few elements. ``rows`` : once cuts are rows of inequalities target by target
     """
 
     def __init__(self, task: Task, pool: OutcomePool) -> None:
         self.task, self.pool = task, pool
-        self._cuts: list[GroupCut] = []
+        self.rows: RowSeparation | None = None
+        self._cuts: list[GroupCut | Row] = []
         self._origin = np.zeros((64, 2), dtype=np.int64)
         self._constants = np.zeros(64)
         self._scores = np.zeros((task.objective.n, 64))
@@ -66,7 +68,15 @@ class CutStore:
         """Add the tangent of a group's value at the posterior information ``point``; return its index."""
         return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
 
-    def add(self, outcome: int, group: int, cut: GroupCut) -> int:
+    def touching(self, outcome: int, group: int, selection: FloatArray) -> int:
+        """Add the lowest cut on a group at a relaxed choice (E,), whatever its sum; return its index."""
+        if self.rows is not None:
+            return self.add(outcome, group, self.rows.row_at(group, selection))
+        objective = self.task.objective
+        inside = np.isin(self.task.problem.robot, self.pool.groups[group])
+        return self.tangent(outcome, group, objective.posterior_mixture(selection * inside))
+
+    def add(self, outcome: int, group: int, cut: GroupCut | Row) -> int:
         """Add a cut; return its index."""
         k = len(self._cuts)
         if k == len(self._constants):
@@ -91,4 +101,6 @@ class CutStore:
     def record(self, k: int) -> TangentCut:
         """One cut as part of a proof."""
         cut = self._cuts[k]
-        return TangentCut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
+        if isinstance(cut, GroupCut):
+            return TangentCut(attack=int(self.outcomes[k]), group=cut.group, point=cut.point, target=cut.target)
+        return cut.record(int(self.outcomes[k]), self.task.objective.prior_information)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.solvers.maxmin.cut_store import CutStore
 from ratt_opt.solvers.maxmin.frontier import ClosingRule
+from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.small_groups import SmallTables
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
@@ -23,7 +24,10 @@ __all__ = ["Known"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Known:
-    """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node."""
+    """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node.
+
+    ``by_rows`` : whether cuts become rows of inequalities target by target
+    """
 
     task: Task
     incumbent: Incumbent
@@ -31,10 +35,14 @@ class Known:
     cuts: CutStore
     proofs: GroupProofs
     tables: SmallTables
+    by_rows: bool
 
     @classmethod
-    def of(cls, task: Task, incumbent: Incumbent, gap: float) -> Known:
-        """What is known before the first tree; ``gap`` : relative width that closes a node."""
+    def of(cls, task: Task, incumbent: Incumbent, gap: float, *, by_rows: bool = True) -> Known:
+        """What is known before the first tree; ``gap`` : relative width that closes a node.
+
+        ``by_rows`` : whether cuts may become rows of inequalities target by target, if that is worth it
+        """
         pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap)
         cuts = CutStore(task, pool)
         return cls(
@@ -44,4 +52,5 @@ class Known:
             cuts=cuts,
             proofs=GroupProofs(cuts, rule, incumbent.budget),
             tables=SmallTables(task, pool),
+            by_rows=by_rows and RowSeparation.fits(task),
         )

@@ -32,6 +32,7 @@ __all__ = [
     "Node",
     "Split",
     "TangentCut",
+    "TargetLemma",
     "TreeNode",
     "UpperProof",
     "WinnerBranch",
@@ -41,16 +42,27 @@ __all__ = [
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TargetLemma(ByValue):
+    """Claim: ``phi_j(T) <= constant + sum of scores[e] over e in T`` for every plan's set ``T``; ``scores`` (E,)."""
+
+    target: int
+    constant: float
+    scores: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TangentCut(ByValue):
-    """A tangent bound on one group of one attack.
+    """A tangent bound on one group of one attack; of a sum over targets, it may touch elsewhere for each.
 
     ``point`` : (M, d, d) posterior information where it touches; ``target`` : for max-eigenvalue, which target's.
+    ``lemmas`` : inequalities in the place of some targets' tangents
     """
 
     attack: int
     group: tuple[int, ...]
     point: FloatArray
     target: int | None = None
+    lemmas: tuple[TargetLemma, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

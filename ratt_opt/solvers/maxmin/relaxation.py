@@ -12,15 +12,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.highs import LinearProgram, Rows, rows_of
+from ratt_opt.solvers.maxmin.rows.params import RowParams
+from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.solvers.maxmin.adversary import Adversary
     from ratt_opt.solvers.maxmin.cut_store import CutStore
     from ratt_opt.solvers.maxmin.elements import Choices
     from ratt_opt.solvers.maxmin.proof import TreeNode
+    from ratt_opt.solvers.maxmin.rows.separation import RelaxedGroups
     from ratt_opt.solvers.maxmin.winners import Winners
 
 __all__ = ["CUTS_A_ROUND", "CutRounds", "RelaxedPlan"]
@@ -136,9 +139,10 @@ class NodeProgram:
 class CutRounds:
     """The cuts in use at a node: usable ones that were stored, and tangents if its relaxed plan violates none."""
 
-    def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary) -> None:
+    def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary, *, by_rows: bool) -> None:
         self.task, self.pool = cuts.task, cuts.pool
-        self.cuts, self.winners, self.adversary = cuts, winners, adversary
+        self.cuts, self.winners, self.adversary, self._by_rows = cuts, winners, adversary, by_rows
+        self._solves, self._params = 0, RowParams()
         self._program = NodeProgram(self.task.objective.n, self.task.choices)
 
     def use(self, k: int) -> None:
@@ -153,21 +157,34 @@ class CutRounds:
         self._program.drop_idle(PATIENCE)
         if self._program.in_use:
             return
-        best = np.array([choice[self.task.singles[choice].argmax()] for choice in node.choices])
-        points = self.pool.group_points(self.task.objective.information[best])
+        best = self.task.indicator([int(choice[self.task.singles[choice].argmax()]) for choice in node.choices])
         for outcome, winner in enumerate(winners.tolist()):
             if winner >= 0 and len(self._program.in_use) < CUTS_A_ROUND:
-                self.use(self.cuts.tangent(outcome, winner, points[winner]))
+                self.use(self.cuts.touching(outcome, winner, best))
 
     def solve(self, node: TreeNode) -> RelaxedPlan | None:
         """The relaxed plan of a node under the cuts in use, or ``None`` if HiGHS claims none."""
         self._program.allow(node.choices)
-        return self._program.solve(self.adversary.budget.seconds_left)
+        self._solves += 1
+        relaxed = self._program.solve(self.adversary.budget.seconds_left)
+        may_begin = self._by_rows and self.cuts.rows is None and not self.adversary.budget.is_over
+        if may_begin and (relaxed is None or self._solves > self._params.rounds):
+            self._begin_rows(node)
+            relaxed = self._program.solve(self.adversary.budget.seconds_left)
+        return relaxed
+
+    def _begin_rows(self, node: TreeNode) -> None:
+        """Let cuts be rows from now on, and leave tangents of whole groups out of the program."""
+        self.cuts.rows = RowSeparation(self.task, self.pool, self.adversary.budget, self._params)
+        self._program.drop(lambda _: True)
+        self.begin(node)
 
     def separate(self, node: TreeNode, relaxed: RelaxedPlan) -> bool:
         """Use cuts that the relaxed plan violates; False when no stored, known or new outcome has one."""
         level = relaxed.level - VIOLATED * abs(relaxed.level)
         of_robot = self.task.mixed(relaxed.selection)
+        if self.cuts.rows is not None:
+            return self._separate_by_rows(self.cuts.rows, node, relaxed.selection, (of_robot, level))
         values = self.pool.group_values(of_robot)
         if self._use_stored(node, relaxed.selection, values, level):
             return True
@@ -176,6 +193,45 @@ class CutRounds:
         return self.adversary.learn_relaxed(of_robot) and self._cut_known(
             node, of_robot, self.pool.group_values(of_robot), level
         )
+
+    def _separate_by_rows(
+        self, rows: RowSeparation, node: TreeNode, selection: FloatArray, at: tuple[FloatArray, float]
+    ) -> bool:
+        """The same by rows; ``at`` : information of each robot (N, M, d, d), and the level.
+
+        Rows are taken between the relaxed plan and a mean of those before, if that cuts it off.
+        """
+        of_robot, level = at
+        between = rows.between(selection, node.choices)
+        if self._use_rows(rows, node, rows.at(between, self.task.mixed(between)), (selection, level)):
+            return True
+        groups = rows.at(selection, of_robot)
+        if self._use_stored(node, selection, groups.values, level):
+            return True
+        if self._use_rows(rows, node, groups, (selection, level)):
+            return True
+        if rows.learn(groups, level) and self._use_rows(rows, node, rows.at(selection, of_robot), (selection, level)):
+            return True
+        return self.adversary.learn_relaxed(of_robot) and self._use_rows(
+            rows, node, rows.at(selection, of_robot), (selection, level)
+        )
+
+    def _use_rows(
+        self, rows: RowSeparation, node: TreeNode, groups: RelaxedGroups, off: tuple[FloatArray, float]
+    ) -> bool:
+        """Add the lowest rows of known outcomes that are below the level ``off`` at a relaxed plan; whether any are."""
+        selection, level = off
+        outcome_of: dict[int, int] = {}
+        for outcome, winner in self._violated(node, groups.values, level):
+            outcome_of.setdefault(winner, outcome)
+            if len(outcome_of) >= CUTS_A_ROUND:
+                break
+        winners, added = list(outcome_of), False
+        for winner, row in zip(winners, rows.rows(groups, winners), strict=True):
+            if row.constant + float(row.scores @ selection) < level:
+                self.use(self.cuts.add(outcome_of[winner], winner, row))
+                added = True
+        return added
 
     def _use_stored(self, node: TreeNode, selection: FloatArray, values: FloatArray, level: float) -> bool:
         """Bring back stored cuts that the relaxed plan violates by much of what a new cut could."""
@@ -193,13 +249,11 @@ class CutRounds:
     def _cut_known(self, node: TreeNode, of_robot: FloatArray, values: FloatArray, level: float) -> bool:
         """Add tangents at the relaxed plan for the known outcomes of smallest value below ``level``."""
         objective = self.task.objective
-        teams = self.pool.outcome_values(values)
         cut_groups: set[int] = set()
-        for outcome in np.argsort(teams, kind="stable").tolist():
-            if teams[outcome] >= level or len(cut_groups) >= CUTS_A_ROUND:
+        for outcome, winner in self._violated(node, values, level):
+            if len(cut_groups) >= CUTS_A_ROUND:
                 break
-            winner = self.winners.of(node, outcome)
-            if winner is None or winner in cut_groups or values[winner] >= level:
+            if winner in cut_groups:
                 continue
             members = list(self.pool.groups[winner])
             point = np.asarray(objective.prior_information + of_robot[members].sum(axis=0))
@@ -207,3 +261,13 @@ class CutRounds:
                 self.use(self.cuts.tangent(outcome, winner, point, target))
             cut_groups.add(winner)
         return bool(cut_groups)
+
+    def _violated(self, node: TreeNode, values: FloatArray, level: float) -> Iterator[tuple[int, int]]:
+        """Known outcomes below ``level`` whose winner is decided, the smallest first, with the winner."""
+        teams = self.pool.outcome_values(values)
+        for outcome in np.argsort(teams, kind="stable").tolist():
+            if teams[outcome] >= level:
+                return
+            winner = self.winners.of(node, outcome)
+            if winner is not None and values[winner] < level:
+                yield outcome, winner

@@ -47,7 +47,7 @@ class BranchAndBound:
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
         self.frontier = Frontier(self.rule, depth_first=depth_first)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
-        self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary)
+        self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary, by_rows=known.by_rows)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
@@ -103,8 +103,8 @@ class BranchAndBound:
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
         self.rounds.begin(node)
         while True:
-            relaxed = None if turns.stop() else self.rounds.solve(node)
-            if relaxed is None and (stop := turns.stop()) is not None:
+            relaxed = None if turns.stop_within_node() else self.rounds.solve(node)
+            if relaxed is None and (stop := turns.stop_within_node()) is not None:
                 return stop
             if relaxed is None:
                 self.division.divide(node, None)
@@ -167,18 +167,13 @@ class BranchAndBound:
         there the tangent is at most what all elements are worth together.
         """
         node = TreeNode(choices=self.task.choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
-        objective = self.task.objective
-        points = self.pool.group_points(objective.information[self.incumbent.candidates.best])
+        best = self.task.indicator(self.incumbent.candidates.best.tolist())
         for outcome in range(len(self.pool)):
             winner = self.winners.of(node, outcome)
             if winner is None:
                 continue
-            touched = [points[winner]]
-            if not len(self.cuts):
-                own = np.isin(self.task.problem.robot, self.pool.groups[winner])
-                touched.append(objective.posterior_information(np.flatnonzero(own)))
-            for point in touched:
-                k = self.cuts.tangent(outcome, winner, point)
+            for selection in (best,) if len(self.cuts) else (best, np.ones_like(best)):
+                k = self.cuts.touching(outcome, winner, selection)
                 self.rounds.use(k)
                 leaf = Leaf(cuts=(k,), weights=(1.0,))
                 node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])

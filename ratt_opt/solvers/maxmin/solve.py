@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -35,7 +35,14 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.known import Progress
 
-__all__ = ["check_limits", "nonrobust_optimum", "nonrobust_search", "search_in_all_coordinates", "solve_maxmin"]
+__all__ = [
+    "check_limits",
+    "nonrobust_optimum",
+    "nonrobust_search",
+    "proved_by_tangents",
+    "search_in_all_coordinates",
+    "solve_maxmin",
+]
 
 ROUNDING = 1e-9
 """Relative width of a bracket that counts as closed."""
@@ -102,10 +109,12 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     start: ArrayLike | Plan | MaxMinResult | None = None,
     *,
     in_depth: bool = True,
+    by_rows: bool = True,
 ) -> MaxMinResult:
     """The same for an information criterion, in the coordinates given.
 
     ``in_depth`` : whether the proof may be that of a search in depth
+    ``by_rows`` : whether its cuts may have inequalities of single targets in the place of tangents
     """
     earlier = _plan_of(problem, start)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
@@ -117,7 +126,8 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
         pool.list_all()
         incumbent.start(_first_plans(problem, first, earlier, budget))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        search = UpperEnds(Known.of(Task.of(problem), incumbent, max(gap - PROVED, 0.0)), in_depth=in_depth)
+        known = Known.of(Task.of(problem), incumbent, max(gap - PROVED, 0.0), by_rows=by_rows)
+        search = UpperEnds(known, in_depth=in_depth)
         stop = _search_and_prove(search, Turns(budget, incumbent), progress)
         if incumbent.is_proved and not budget.is_over:
             break_ties(incumbent, budget)
@@ -126,6 +136,38 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     except KeyboardInterrupt:
         stop = budget.interrupt()
     return _result(problem, incumbent, search, stop, gap)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TangentProofParams:
+    """How long a proof without inequalities of single targets is searched for.
+
+    ``share`` : of the seconds left; ``nodes``, ``times`` : at most this many nodes, or times those of the first search:
+    what a certificate states against the time that it takes
+    """
+
+    share: float = 0.5
+    nodes: int = 2_000
+    times: int = 10
+
+
+def proved_by_tangents(
+    problem: Problem, result: MaxMinResult, budget: Budget, params: TangentProofParams | None = None
+) -> MaxMinResult:
+    """Prove the upper end of a result by tangents, covers and marginal gains alone, as certificates state proofs.
+
+    The result itself if its proof is such a one. Otherwise plans are searched again, from the one found. If a limit
+    ends that search, the upper end is the one proved by then, which may be larger.
+    """
+    if result.proof is None or not any(cut.lemmas for cut in result.proof.cuts):
+        return result
+    params = TangentProofParams() if params is None else params
+    part = budget.part(params.share, max_nodes=max(params.nodes, params.times * result.nodes))
+    searched = with_unit_prior(measured_coordinates(problem))
+    gap = max((result.upper - result.lower) / abs(result.upper), ROUNDING) if result.upper else ROUNDING
+    found = search_in_all_coordinates(searched, part, gap, start=result.elements, by_rows=False).outward(searched)
+    lifted = searched.lifted(found)
+    return replace(result, upper=max(lifted.upper, result.lower), proof=lifted.proof)
 
 
 def _plan_of(problem: Problem, start: ArrayLike | Plan | MaxMinResult | None) -> IntArray | None:

@@ -37,6 +37,11 @@ class Turns:
             return stop
         return Stop.TIME if self._turn.stop() is Stop.TIME and not self.incumbent.is_proved else None
 
+    def stop_within_node(self) -> Stop | None:
+        """Why to stop before the node in work is done: one that a limit of nodes admits is."""
+        stop = self.stop()
+        return None if stop is Stop.NODES else stop
+
     def prove(self) -> bool:
         """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
         goes_on = self.incumbent.prove()

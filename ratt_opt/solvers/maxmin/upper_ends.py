@@ -181,7 +181,8 @@ class UpperEnds:
 
     def _run_concave(self, turns: Turns, progress: Progress, nodes: int) -> Stop:
         until = turns.budget.nodes + nodes
-        return self._concave.run(TurnsUntil(turns, lambda: turns.budget.nodes >= until), progress)
+        told = progress and (lambda nodes, lower, upper: progress(nodes, lower, min(upper, self.upper)))
+        return self._concave.run(TurnsUntil(turns, lambda: turns.budget.nodes >= until), told)
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:

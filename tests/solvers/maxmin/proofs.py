@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from ratt_opt import (
@@ -10,7 +12,15 @@ from ratt_opt import (
     Problem,
     TraceObjective,
 )
-from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, UpperProof, WinnerBranch
+from ratt_opt.solvers.maxmin.proof import (
+    CoverLeaf,
+    ElementBranch,
+    Leaf,
+    MarginalLeaf,
+    TargetLemma,
+    UpperProof,
+    WinnerBranch,
+)
 from tests.oracles import groups_left
 
 
@@ -80,6 +90,26 @@ def tangent(f, point, target):
     return max(f.weights * np.linalg.eigvalsh(f.prior)[:, -1]) - f.weights[target] * values[-1], slope
 
 
+def target_value(f, target, point) -> float:
+    """What one target's posterior information (d, d) is worth, from the definitions."""
+    prior = f.prior[target]
+    if isinstance(f, TraceObjective):
+        C = np.eye(len(prior)) if f.output is None else f.output[target]
+        return f.weights[target] * np.trace(C @ (prior - np.linalg.inv(point)) @ C.T)
+    return f.weights[target] * (np.linalg.slogdet(point)[1] + np.linalg.slogdet(prior)[1])
+
+
+def assert_holds_for_every_set(problem: Problem, lemma: TargetLemma) -> None:
+    """Compare an inequality of one target with its value for every set of at most one element of each robot."""
+    f, j = problem.objective, lemma.target
+    seers = set(np.flatnonzero(f.information[:, j].any(axis=(-2, -1))).tolist())
+    options = [[None, *(e for e in choice.tolist() if e in seers)] for choice in problem.choices]
+    sets = [[e for e in chosen if e is not None] for chosen in product(*options)]
+    for chosen in sets:
+        value = target_value(f, j, f.posterior_information(np.array(chosen, dtype=np.int64))[j])
+        assert lemma.constant + lemma.scores[chosen].sum() >= value
+
+
 def proved_upper(problem: Problem, proof: UpperProof) -> float:
     """Walk the tree and bound every leaf from the matrices; assert that it covers all plans."""
     f = problem.objective
@@ -91,8 +121,18 @@ def proved_upper(problem: Problem, proof: UpperProof) -> float:
         assert cut.group in groups
         assert len(groups) == 1 or winners.get(cut.attack) == cut.group
         value, slope = tangent(f, cut.point, cut.target)
+        slope = slope.copy()
+        for lemma in cut.lemmas:
+            assert_holds_for_every_set(problem, lemma)
+        named = {lemma.target for lemma in cut.lemmas}
+        assert len(named) == len(cut.lemmas)
+        if named:
+            value -= sum(target_value(f, j, cut.point[j]) for j in named)
+            slope[sorted(named)] = 0.0
         constant = value + sum(np.vdot(slope[j], f.prior_information[j] - cut.point[j]) for j in range(f.n_targets))
         scores = np.array([sum(np.vdot(slope[j], f.information[e, j]) for j in range(f.n_targets)) for e in range(f.n)])
+        constant += sum(lemma.constant for lemma in cut.lemmas)
+        scores = scores + sum((lemma.scores for lemma in cut.lemmas), np.zeros(f.n))
         return constant, np.where(np.isin(problem.robot, cut.group), scores, 0.0)
 
     nodes = iter(proof.tree)

@@ -1,0 +1,38 @@
+"""Numbers of the rows of inequalities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["RowParams"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RowParams:
+    """What is kept and tried; none of it changes what is claimed.
+
+    ``unseen`` : least share of pairs of an element and a target without information
+    ``rounds`` : linear programs with tangents of whole groups before rows begin: many searches end by then
+    ``paired`` : elements of each target that tell most, whose pairs are base sets: stronger rows against more of them
+    ``most_bases`` : base sets of all targets together; beyond it single elements that tell least are left out
+    ``base_work`` : operations for their marginals, likewise: about a second
+    ``most`` : inequalities that are kept at once, beside base sets: memory and time of a round
+    ``lower`` : share of a target's bound by which a tangent has to be lower to be kept
+    ``inward`` : share of the way from a relaxed plan to the mean of earlier ones where rows are taken: fewer rounds
+        against rows that cut less off
+    ``newest`` : share of the newest relaxed plan in that mean
+    ``starts`` : known outcomes from which robots are exchanged
+    ``steps`` : exchanges of one descent at most
+    """
+
+    unseen: float = 0.25
+    rounds: int = 8
+    paired: int = 6
+    most_bases: int = 12_000
+    base_work: float = 3e8
+    most: int = 6_000
+    lower: float = 1e-9
+    inward: float = 0.5
+    newest: float = 0.2
+    starts: int = 3
+    steps: int = 30

@@ -1,0 +1,124 @@
+"""The inequalities of all targets that are known, and the rows that they add up to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.bounds.cuts import ROUNDING
+from ratt_opt.solvers.maxmin.proof import TangentCut
+from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities
+from ratt_opt.solvers.maxmin.rows.inequalities import tangents
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.solvers.maxmin.elements import Task
+    from ratt_opt.solvers.maxmin.rows.inequalities import Inequalities, TargetInequality
+    from ratt_opt.solvers.maxmin.rows.params import RowParams
+
+__all__ = ["InequalityPool", "Row"]
+
+
+class Row:
+    """``phi(plan on the group) <= constant + sum of scores[e]`` for every plan: one inequality of each target."""
+
+    __slots__ = ("constant", "group", "parts", "scores")
+
+    def __init__(
+        self, group: tuple[int, ...], constant: float, scores: FloatArray, parts: tuple[TargetInequality, ...]
+    ) -> None:
+        self.group, self.constant, self.scores, self.parts = group, constant, scores, parts
+
+    def record(self, attack: int, elsewhere: FloatArray) -> TangentCut:
+        """The row as part of a proof; where a target has a lemma the point is that of ``elsewhere`` (M, d, d)."""
+        point = elsewhere.copy()
+        for part in self.parts:
+            if part.point is not None:
+                point[part.target] = part.point[part.target]
+        lemmas = tuple(part.lemma for part in self.parts if part.lemma is not None)
+        return TangentCut(attack=attack, group=self.group, point=point, lemmas=lemmas)
+
+
+class InequalityPool:
+    """Inequalities that serve every outcome: at least one of each target."""
+
+    def __init__(self, task: Task, params: RowParams) -> None:
+        self.task, self.params = task, params
+        objective = task.objective
+        self._targets, self._constants = np.zeros(0, dtype=np.int64), np.zeros(0)
+        self._scores = np.zeros((1, objective.n))
+        self._origins: list[TargetInequality] = []
+        self._used = np.zeros(0)
+        self._round = 0.0
+        everything = objective.posterior_mixture(np.ones(objective.n))
+        self.add(
+            [*base_set_inequalities(task, params), tangents(objective, everything, np.arange(objective.n_targets))]
+        )
+        self._lasting = len(self)
+
+    def __len__(self) -> int:
+        return len(self._origins)
+
+    def by_robot(self, selection: FloatArray) -> FloatArray:
+        """(N, K) what each robot's relaxed choice (E,) adds to each inequality, sorted by target."""
+        problem, chosen = self.task.problem, np.flatnonzero(selection)
+        mixed = np.zeros((len(chosen), problem.n_robots))
+        mixed[np.arange(len(chosen)), problem.robot[chosen]] = selection[chosen]
+        added = self._scores[: len(self), chosen] @ mixed
+        return np.ascontiguousarray(added[self._order].T)
+
+    def target_bounds(self, members: FloatArray, by_robot: FloatArray) -> FloatArray:
+        """(G, M) the lowest bound of each target for groups ``members`` (G, N)."""
+        return np.asarray(np.minimum.reduceat(members @ by_robot + self._sorted_constants, self._starts, axis=1))
+
+    def add(self, parts: Sequence[Inequalities]) -> None:
+        """Keep some inequalities; if there are too many, half of those that may go do, the least used lately."""
+        count = sum(len(part.targets) for part in parts)
+        if len(self) + count > self.params.most and self._origins:
+            self._forget()
+        self._make_room(count)
+        known = len(self)
+        self._targets = np.concatenate([self._targets, *(part.targets for part in parts)])
+        self._constants = np.concatenate([self._constants, *(part.constants for part in parts)])
+        self._scores[known : known + count] = np.concatenate([part.scores for part in parts], axis=1).T
+        self._origins.extend(origin for part in parts for origin in part.origins)
+        self._used = np.concatenate([self._used, np.full(count, self._round)])
+        self._sort()
+
+    def row(self, group: tuple[int, ...], selection: FloatArray) -> Row:
+        """The lowest row of a group at a relaxed choice (E,)."""
+        inside = np.isin(self.task.problem.robot, group)
+        chosen = np.flatnonzero((selection > 0) & inside)
+        values = (self._scores[: len(self), chosen] @ selection[chosen] + self._constants)[self._order]
+        ends = np.append(self._starts[1:], len(values))
+        lowest = self._order[[a + int(values[a:b].argmin()) for a, b in zip(self._starts, ends, strict=True)]]
+        self._round += 1
+        self._used[lowest] = self._round
+        scores, constants = self._scores[lowest].sum(axis=0) * inside, self._constants[lowest]
+        size = float(np.abs(constants).sum() + np.abs(scores).max(initial=0.0) * len(group))
+        constant = float(constants.sum()) + ROUNDING * size
+        return Row(group, constant, scores, tuple(self._origins[k] for k in lowest.tolist()))
+
+    def _forget(self) -> None:
+        """Drop half of the inequalities that were learnt, those that were not lowest for longest."""
+        learnt = np.arange(self._lasting, len(self))
+        gone = learnt[np.argsort(self._used[learnt], kind="stable")[: len(learnt) // 2]]
+        kept = np.setdiff1d(np.arange(len(self)), gone)
+        self._scores[: len(kept)] = self._scores[kept]
+        self._targets, self._constants, self._used = self._targets[kept], self._constants[kept], self._used[kept]
+        self._origins = [self._origins[k] for k in kept.tolist()]
+
+    def _make_room(self, more: int) -> None:
+        needed = len(self) + more
+        if needed > len(self._scores):
+            grown = np.zeros((max(needed, 2 * len(self._scores)), self._scores.shape[1]))
+            grown[: len(self)] = self._scores[: len(self)]
+            self._scores = grown
+
+    def _sort(self) -> None:
+        self._order = np.argsort(self._targets, kind="stable")
+        self._starts = np.searchsorted(self._targets[self._order], np.arange(self.task.objective.n_targets))
+        self._sorted_constants: IntArray | FloatArray = self._constants[self._order]

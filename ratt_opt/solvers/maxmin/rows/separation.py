@@ -1,0 +1,114 @@
+"""Rows that a relaxed plan violates: what groups are worth to it by the inequalities known, and by new tangents."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
+from ratt_opt.solvers.maxmin.rows.inequalities import tangents
+from ratt_opt.solvers.maxmin.rows.params import RowParams
+from ratt_opt.solvers.maxmin.rows.pool import InequalityPool
+
+if TYPE_CHECKING:
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.budget import Budget
+    from ratt_opt.solvers.maxmin.elements import Choices, Task
+    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.rows.pool import Row
+
+__all__ = ["RelaxedGroups", "RowSeparation"]
+
+
+class RelaxedGroups:
+    """What known groups are worth to a relaxed plan, ``selection`` (E,), at most.
+
+    ``points`` : (G, M, d, d) posterior information; ``bounds`` : (G, M) of each target by the inequalities known
+    ``exact`` : (G, M) each target's concave value; ``values`` : (G,) of the rows that are lowest with new tangents
+    """
+
+    __slots__ = ("bounds", "exact", "points", "selection", "values")
+
+    def __init__(self, selection: FloatArray, points: FloatArray, bounds: FloatArray, exact: FloatArray) -> None:
+        self.selection, self.points, self.bounds, self.exact = selection, points, bounds, exact
+        self.values = np.asarray(np.minimum(bounds, exact).sum(axis=1))
+
+
+class RowSeparation:
+    """``inequalities`` : those of one problem, for all outcomes and nodes of its search."""
+
+    def __init__(self, task: Task, outcomes: OutcomePool, budget: Budget, params: RowParams) -> None:
+        self.task, self.outcomes, self.budget, self.params = task, outcomes, budget, params
+        self.inequalities = InequalityPool(task, params)
+        everything = task.objective.posterior_mixture(np.ones(task.objective.n))
+        self._most = task.objective.target_values(everything)
+        """(M,) what all elements together are worth for each target."""
+        self._mean = np.zeros(task.objective.n)
+
+    @staticmethod
+    def fits(task: Task, params: RowParams | None = None) -> bool:
+        """Whether the criterion is a sum over targets of which robots see few.
+
+        If they see all, tangents of whole groups are as low, and cost less.
+        """
+        params = RowParams() if params is None else params
+        unseen = 1 - task.objective.information.any(axis=(-2, -1)).mean()
+        return task.objective.states("target_tangents") and bool(unseen >= params.unseen)
+
+    def at(self, selection: FloatArray, of_robot: FloatArray) -> RelaxedGroups:
+        """What is known of a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d)."""
+        objective = self.task.objective
+        points = self.outcomes.group_points(of_robot)
+        exact = objective.target_values(points)
+        bounds = self.inequalities.target_bounds(self.outcomes.membership(), self.inequalities.by_robot(selection))
+        return RelaxedGroups(selection, points, bounds, exact)
+
+    def between(self, selection: FloatArray, choices: Choices) -> FloatArray:
+        """(E,) a choice between a relaxed plan and a mean of earlier ones, within a node's ``choices``.
+
+        Rows there need fewer rounds than rows at the relaxed plans, which jump from vertex to vertex.
+
+        Source: in-out separation (Ben-Ameur and Neto 2007).
+        """
+        params, mean = self.params, np.zeros_like(self._mean)
+        for choice in choices:
+            own = self._mean[choice]
+            mean[choice] = own / own.sum() if own.sum() > 0 else selection[choice]
+        self._mean = (1 - params.newest) * mean + params.newest * selection
+        return np.asarray((1 - params.inward) * selection + params.inward * mean)
+
+    def rows(self, relaxed: RelaxedGroups, groups: list[int]) -> list[Row]:
+        """The lowest row of each group, with the tangents that lower it."""
+        self._touch(relaxed, groups)
+        return [self.inequalities.row(self.outcomes.groups[g], relaxed.selection) for g in groups]
+
+    def _touch(self, relaxed: RelaxedGroups, groups: list[int]) -> None:
+        """Keep the tangents at some groups' points of targets whose value there is below what is known."""
+        lower = (relaxed.exact < relaxed.bounds - self.params.lower * self._most)[groups]
+        fresh = [
+            tangents(self.task.objective, relaxed.points[g], np.flatnonzero(own))
+            for g, own in zip(groups, lower, strict=True)
+            if own.any()
+        ]
+        if fresh:
+            self.inequalities.add(fresh)
+
+    def row_at(self, group: int, selection: FloatArray) -> Row:
+        """The lowest row of one group at a relaxed choice (E,), with new tangents."""
+        objective, inside = self.task.objective, np.isin(self.task.problem.robot, self.outcomes.groups[group])
+        point = objective.posterior_mixture(selection * inside)
+        members = self.outcomes.membership()[group][None]
+        bounds = self.inequalities.target_bounds(members, self.inequalities.by_robot(selection))
+        relaxed = RelaxedGroups(selection, point[None], bounds, objective.target_values(point)[None])
+        self._touch(relaxed, [0])
+        return self.inequalities.row(self.outcomes.groups[group], selection)
+
+    def learn(self, relaxed: RelaxedGroups, level: float) -> bool:
+        """Exchange blinded robots of known outcomes for some that leave rows less than ``level``; whether one does."""
+        known = len(self.outcomes)
+        if not self.outcomes.complete:
+            by_robot = self.inequalities.by_robot(relaxed.selection)
+            for attack in exchanged(self.outcomes, self.inequalities, by_robot, relaxed.values, (level, self.budget)):
+                self.outcomes.add(attack)
+        return len(self.outcomes) > known
