@@ -192,6 +192,7 @@ from .attack.edge_cuts.smallest import smallest_largest_group as smallest_larges
 from .graph.largest_group.counting import LargestGroup as LargestGroup
 from .attack.edge_cuts.fewest import fewest_cuts as fewest_cuts
 from .attack.edge_cuts.fewest import FewestCuts as FewestCuts
+from .certificates.edge_cuts import certify_cuts as certify_cuts
 from .graph.outcomes import (
     non_dominated_outcomes as non_dominated_outcomes,
     count_outcomes as count_outcomes,

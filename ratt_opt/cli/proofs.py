@@ -10,6 +10,7 @@ from ratt_opt.certificates.verifier.work import SECONDS
 from ratt_opt.cli.exit_codes import UPPER_ONLY
 from ratt_opt.cli.options import JsonFlag, LatexFlag, Objective, OutFolder, check_output
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, written
+from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
 
 __all__ = ["audit", "verify"]
@@ -43,6 +44,7 @@ def verify(
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
     proved; 4: neither proved nor refuted within the limits. None of these if the output cannot be written (74).
     """
+    from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, verify_cuts
     from ratt_opt.certificates.verifier.reading import load
     from ratt_opt.certificates.verifier.verify import verify_document
     from ratt_opt.certificates.verifier.work import watched
@@ -66,6 +68,15 @@ def verify(
         expected = differences(given, objective)
     with Step("checking the certificate") as step, watched(step.say):
         document = load(file)
+        if document["format"] == CUTS_FORMAT:
+            if problem is not None or verified or explain:
+                raise InputError("file", "must be no certificate of cuts with --problem, --verified or --explain", file)
+            proved = verify_cuts(document, time_limit=time_limit)
+            if as_json:
+                print_json({"format": "ratt-opt cut verification", "version": 1, **asdict(proved)})
+            else:
+                print_lines(proved.lines())
+            return 0
         found = verify_document(document, expected_problem=expected, time_limit=time_limit)
         second = None if checker is None else check_extracted(file, program=checker, time_limit=time_limit)
     story = []

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.graph.communication import Link
 
-__all__ = ["FewestCuts", "cut_network", "cut_result", "fewest_cuts"]
+__all__ = ["FewestCuts", "cut_network", "cut_result", "fewest_cuts", "size_in_steps"]
 
 T = TypeVar("T")
 
@@ -98,7 +98,7 @@ def fewest_cuts(
     """
     own = Budget.inside(budget, time_limit, max_nodes)
     network = cut_network(graph, weights, sizes, protected_links)
-    search = CutSearch(network, _room(network, size), own)
+    search = CutSearch(network, size_in_steps(network, size), own)
     return cut_result(network, search, search.run(), size)
 
 
@@ -162,7 +162,7 @@ def _complete(argument: str, given: Mapping[T, object], known: Iterable[T], name
     return renamed
 
 
-def _room(network: CutNetwork, size: float) -> int:
+def size_in_steps(network: CutNetwork, size: float) -> int:
     """The size in steps of sizes, rounded down.
 
     Raises ``InputError`` : it is no number, or less than robots that stay together.

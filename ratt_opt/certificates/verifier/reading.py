@@ -21,6 +21,8 @@ from ratt_opt.errors import FileFormatError, InputError, ProofError
 
 FORMAT = "ratt-opt certificate"
 VERSION = 2
+CUTS_FORMAT, CUTS_VERSION = "ratt-opt cut certificate", 1
+"""Certificates of fewest cuts."""
 LARGEST_FILE = 32 * 2**20
 LARGEST_LENGTH = 2_000_000
 """Most entries of all lists together; with the next two this bounds the memory of a check."""
@@ -107,6 +109,10 @@ def load(path: str | Path) -> dict[str, Any]:
 
 def check_format(document: object) -> None:
     """Refuse a document of another format or version."""
+    if isinstance(document, dict) and document.get("format") == CUTS_FORMAT:
+        if type(document.get("version")) is not int or document["version"] != CUTS_VERSION:
+            raise _refusal("version", f"must be {CUTS_VERSION}", document.get("version"))
+        return
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise _refusal("format", f"must be {FORMAT!r}", document.get("format") if type(document) is dict else "none")
     if type(document.get("version")) is not int or document["version"] != VERSION:

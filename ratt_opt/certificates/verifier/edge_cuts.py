@@ -1,0 +1,178 @@
+"""Whether a certificate proves that groups of a size need links of at least some weight to be cut; in integers.
+
+It states prices ``q >= 0`` of robots. Let every group S of at most ``size`` that links of weight > 0 connect have
+
+    unit * (weight of the links inside S)  <=  q(S).
+
+Then a partition into groups of at most ``size`` has links of weight at most ``sum(q) / unit`` inside, and cuts all
+others. (A group that is not connected has no more inside than its parts, and no lower prices.) The tree shows the
+condition for all S: a split decides whether one robot is in S, and a leaf closes its case. Some robots are inside, with
+links of weight ``base / unit`` less prices, and ``room`` is left. Free robots are those not decided that fit, and that
+robots inside reach through free ones. For any division of links between free robots among their ends, and any
+``multiplier >= 0``,
+
+    unit * w(S) - q(S)  <=  base + multiplier * room + sum over free robots of max(0, given - q - multiplier * size),
+
+where a link to a robot inside gives the free one all its weight: what S has beyond ``base`` is given to its free
+robots, and their sizes add up to at most ``room``. A leaf must bring the right side to at most 0. It lists the parts of
+links, as the link's first end gets them, that changed since the last leaf.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from ratt_opt.certificates.verifier.reading import CUTS_FORMAT, array, document_hash, fields, index, need, walk
+from ratt_opt.certificates.verifier.work import SECONDS, limited, tick
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["CUTS_FORMAT", "VerifiedCuts", "verify_cuts"]
+
+LARGEST = 2**62
+"""Largest integer that a file may state."""
+Case = tuple[frozenset[int], frozenset[int]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VerifiedCuts:
+    """Proved: links of weight at least ``lower / scale`` must be cut for groups of at most ``size / size_scale``."""
+
+    lower: int
+    scale: int
+    size: int
+    size_scale: int
+    n_robots: int
+    n_links: int
+    leaves: int
+    network_hash: str
+
+    def lines(self) -> list[str]:
+        """Say in plain text what was proved, and for which network."""
+        weight = f"{self.lower}" if self.scale == 1 else f"{self.lower}/{self.scale}"
+        size = f"{self.size}" if self.size_scale == 1 else f"{self.size}/{self.size_scale}"
+        return [
+            f"network: {self.n_robots} robots, {self.n_links} links; SHA-256 of its data {self.network_hash}",
+            f"proved in integers: links of weight at least {weight} must be cut so that no group has more than {size} "
+            f"({self.leaves} leaves)",
+            "not covered: whether the data describe the real network",
+        ]
+
+
+def verify_cuts(document: dict[str, Any], *, time_limit: float = SECONDS) -> VerifiedCuts:
+    """Decide a certificate of cuts that is loaded already.
+
+    Raises
+    ------
+    FileFormatError : a field is missing or is not what it must be.
+    ProofError : the proof has a fault; the text names the first one found.
+    UndecidedError : neither, within the time.
+    """
+    with limited(time_limit):
+        return _decide(document)
+
+
+def _decide(document: dict[str, Any]) -> VerifiedCuts:
+    names = "format version network size claim unit prices tree"
+    _, _, network, size, claim, unit, prices, tree = fields("", document, names)
+    about = _Network(network, index("size", size, LARGEST))
+    about.unit = 1 + index("unit less 1", unit - 1 if type(unit) is int else unit, LARGEST)
+    about.prices = [index("price", price, LARGEST) for price in array("prices", prices, about.robots)]
+    leaves = walk("cuts", tree, (frozenset[int](), frozenset[int]()), about.expand)
+    inside = sum(about.prices) // about.unit
+    lower = index("claim", claim, LARGEST)
+    need(sum(about.weights) - inside >= lower, "claim: prices prove less")
+    return VerifiedCuts(
+        lower=lower,
+        scale=about.scale,
+        size=about.size,
+        size_scale=about.size_scale,
+        n_robots=about.robots,
+        n_links=len(about.links),
+        leaves=leaves,
+        network_hash=document_hash(network),
+    )
+
+
+class _Network:
+    """The network as stated, and the parts of links as the leaves so far left them."""
+
+    def __init__(self, stated: object, size: int) -> None:
+        count, links, weights, sizes, scale, size_scale = fields(
+            "network", stated, "robots links weights sizes scale size_scale"
+        )
+        self.robots, self.size = index("network robots", count, LARGEST), size
+        pairs = [array("link", link, 2) for link in array("network links", links)]
+        self.links = [tuple(index("link end", end, self.robots) for end in pair) for pair in pairs]
+        need(all(i < j for i, j in self.links), "network: a link's ends are not in ascending order")
+        need(len(set(self.links)) == len(self.links), "network: a link is given twice")
+        self.weights = [index("weight", one, LARGEST) for one in array("weights", weights, len(self.links))]
+        self.sizes = [index("robot's size", one, LARGEST) for one in array("sizes", sizes, self.robots)]
+        need(all(self.sizes), "network: a robot has no size")
+        self.scale = 1 + index("scale less 1", scale - 1 if type(scale) is int else scale, LARGEST)
+        self.size_scale = 1 + index(
+            "size scale less 1", size_scale - 1 if type(size_scale) is int else size_scale, LARGEST
+        )
+        self.near: list[list[int]] = [[] for _ in range(self.robots)]
+        for (i, j), weight in zip(self.links, self.weights, strict=True):
+            if weight:
+                self.near[i].append(j)
+                self.near[j].append(i)
+        self.parts = [0] * len(self.links)
+        self.unit, self.prices = 1, [0] * self.robots
+
+    def expand(self, node: object, case: Case) -> Iterator[Case]:
+        """The cases of a split, the robot inside first; none of a leaf that closes its case."""
+        inside, outside = case
+        if isinstance(node, dict) and set(node) == {"split"}:
+            robot = index("split", node["split"], self.robots)
+            need(robot not in inside and robot not in outside, "cuts proof: a robot is split twice")
+            yield inside | {robot}, outside
+            yield inside, outside | {robot}
+            return
+        multiplier, changed = fields("leaf", node, "multiplier parts")
+        self._change(array("parts", changed))
+        need(self._bound(index("multiplier", multiplier, LARGEST), inside, outside) <= 0, "cuts proof: a leaf is open")
+
+    def _change(self, changed: list[Any]) -> None:
+        need(len(changed) % 2 == 0, "cuts proof: a part of a link is missing")
+        for link, part in zip(changed[::2], changed[1::2], strict=True):
+            place = index("link of a part", link, len(self.links))
+            self.parts[place] = index("part", part, self.unit * self.weights[place] + 1)
+
+    def _bound(self, multiplier: int, inside: frozenset[int], outside: frozenset[int]) -> int:
+        """The right side above; at most 0 if the robots inside do not fit, for then the case has no group."""
+        room = self.size - sum(self.sizes[i] for i in inside)
+        if room < 0:
+            return 0
+        free = self._free(inside, outside, room)
+        bound = multiplier * room - sum(self.prices[i] for i in inside)
+        given = dict.fromkeys(free, 0)
+        for place, (i, j) in enumerate(self.links):
+            tick()
+            whole = self.unit * self.weights[place]
+            if i in free and j in free:
+                given[i] += self.parts[place]
+                given[j] += whole - self.parts[place]
+            elif i in inside and j in inside:
+                bound += whole
+            elif i in free and j in inside:
+                given[i] += whole
+            elif j in free and i in inside:
+                given[j] += whole
+        return bound + sum(max(0, given[i] - self.prices[i] - multiplier * self.sizes[i]) for i in free)
+
+    def _free(self, inside: frozenset[int], outside: frozenset[int], room: int) -> set[int]:
+        """Undecided robots that fit and that robots inside reach through such ones; all that fit if none is inside."""
+        fit = {i for i in range(self.robots) if i not in inside and i not in outside and self.sizes[i] <= room}
+        if not inside:
+            return fit
+        seen, open_ = set[int](), list(inside)
+        while open_:
+            for j in self.near[open_.pop()]:
+                if j in fit and j not in seen:
+                    seen.add(j)
+                    open_.append(j)
+        return seen

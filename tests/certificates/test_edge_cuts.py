@@ -1,0 +1,114 @@
+"""Certificates of fewest cuts: what is written is proved, and a forged one is refused."""
+
+from __future__ import annotations
+
+import json
+from copy import deepcopy
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt.certificates.verifier.edge_cuts import verify_cuts
+from ratt_opt.cli import run
+from tests.attack.edge_cuts.test_fewest import by_all_partitions, random_case
+
+
+def written(seed, path):
+    """A certificate with its network, weights, sizes and size; ``None`` if the answer needs no prices."""
+    graph, weights, sizes, _, size = random_case(seed)
+    found = ro.fewest_cuts(graph, size, weights=weights, sizes=sizes)
+    if found.prices is None:
+        return None
+    verified = ro.certify_cuts(graph, found, path, weights=weights, sizes=sizes)
+    assert verified.lower == found.by_prices <= found.upper
+    assert verified.lower <= by_all_partitions(graph, weights, sizes, size)
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def refused(document):
+    with pytest.raises((ro.ProofError, ro.InputError)):
+        verify_cuts(document)
+
+
+@pytest.mark.parametrize("first", range(0, 60, 20))
+def test_what_is_found_is_proved_and_forgeries_are_refused(first, tmp_path):
+    forged = 0
+    for seed in range(first, first + 20):
+        document = written(seed, tmp_path / "cuts.json")
+        if document is None:
+            continue
+        refused(document | {"claim": document["claim"] + 1})
+        refused(document | {"tree": document["tree"][:-1]})
+        refused(document | {"tree": [*document["tree"], document["tree"][-1]]})
+        dearest = int(np.argmax(document["prices"]))
+        lower = deepcopy(document)
+        lower["prices"][dearest] = 0
+        lower["claim"] = sum(lower["network"]["weights"]) - sum(lower["prices"]) // lower["unit"]
+        if lower["claim"] > by_all_partitions(*stated(document)):
+            refused(lower)
+            forged += 1
+        heavier = deepcopy(document)
+        heavier["network"]["weights"] = [9 * weight + 9 for weight in document["network"]["weights"]]
+        heavier["claim"] = sum(heavier["network"]["weights"]) - sum(document["prices"]) // document["unit"]
+        if heavier["claim"] > by_all_partitions(*stated(heavier)):
+            refused(heavier)
+    assert forged
+
+
+def stated(document):
+    """The question that a certificate is about, for the oracle."""
+    network = document["network"]
+    graph = nx.empty_graph(network["robots"])
+    graph.add_edges_from(map(tuple, network["links"]))
+    weights = dict(zip(map(tuple, network["links"]), network["weights"], strict=True))
+    return graph, weights, network["sizes"], document["size"]
+
+
+@pytest.fixture(scope="module")
+def karate(tmp_path_factory):
+    path = tmp_path_factory.mktemp("cuts") / "karate.json"
+    graph = nx.karate_club_graph()
+    ro.certify_cuts(graph, ro.fewest_cuts(graph, 8), path)
+    return path
+
+
+def test_every_field_counts(karate):
+    document = json.loads(karate.read_text(encoding="utf-8"))
+    assert verify_cuts(document).lower == 31
+    leaf = next(k for k, node in enumerate(document["tree"]) if node.get("parts"))
+    changes = [
+        lambda d: d.update(size=d["size"] + 1),
+        lambda d: d.update(unit=0),
+        lambda d: d.update(unit=d["unit"] // 2),
+        lambda d: d.update(prices=[-1, *d["prices"][1:]]),
+        lambda d: d.update(prices=d["prices"][1:]),
+        lambda d: d.update(prices=[0] * 34, claim=78),
+        lambda d: d["network"].update(links=d["network"]["links"][::-1][1:]),
+        lambda d: d["network"]["links"].__setitem__(0, [1, 0]),
+        lambda d: d["network"]["links"].__setitem__(0, d["network"]["links"][1]),
+        lambda d: d["network"]["sizes"].__setitem__(0, 0),
+        lambda d: d["tree"][leaf]["parts"].__setitem__(1, -1),
+        lambda d: d["tree"][leaf]["parts"].__setitem__(1, 2**40),
+        lambda d: d["tree"][leaf]["parts"].__setitem__(0, 78),
+        lambda d: d["tree"][leaf].update(multiplier=-1),
+        lambda d: d["tree"][leaf].update(multiplier=2**40),
+        lambda d: d["tree"][leaf].update(further=0),
+        lambda d: d["tree"][0].update(split=34),
+        lambda d: d.update(further=0),
+    ]
+    for change in changes:
+        forged = deepcopy(document)
+        change(forged)
+        refused(forged)
+
+
+def test_the_command_reads_it(karate, tmp_path, capsys):
+    assert run(["verify", str(karate)]) == 0
+    assert "links of weight at least 31 must be cut" in capsys.readouterr().out
+    forged = json.loads(karate.read_text(encoding="utf-8")) | {"claim": 32}
+    (tmp_path / "forged.json").write_text(json.dumps(forged))
+    assert run(["verify", str(tmp_path / "forged.json")]) == 1
+    assert "prices prove less" in capsys.readouterr().err
+    assert run(["verify", str(karate), "--explain"]) == 2
