@@ -82,7 +82,7 @@ def run_mission(
         sees the belief of the group that knows most.
     horizon : steps H that a plan looks ahead; its first controls are executed
     seed : of everything random
-    model : motions, sensors and filter; the paper's and the textbook EKF by default
+    model : motions, sensors and filter; by default the paper's motions and the second-order EKF
     journal : a file that keeps every step's decisions; a mission that was killed is replayed from it and goes on
     progress : called as ``progress(step, steps)``
 
@@ -106,6 +106,10 @@ def run_mission(
     settings = {name: value if isinstance(value, str) else _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
     log = Journal.open(journal, scenario, settings | {"model": _described(world.model)})
+    settings |= {
+        "motion": motion if isinstance(motion := world.model.motion, str) else _described(motion),
+        "area": _described(world.model.area),
+    }
     flight = _Flight(world, players, sharing, seed)
     for step in range(steps):
         flight.advance(step, log)
