@@ -99,7 +99,7 @@ def split_result(
     )
 
 
-COUNTED = "the links left, and the protected ones, do not fit into smaller groups"
+COUNTED = "the links left, the protected ones, or the robots in that many groups, do not fit into smaller groups"
 """The reason for :func:`counting_bound`."""
 
 
@@ -111,12 +111,13 @@ def by_counting(threat: Threat, budget: Budget) -> LargestGroup:
 def counting_bound(threat: Threat) -> int:
     """Lower bound on ``n_max``: groups of at most p robots have at most ``links_within(N, p)`` links.
 
-    Robots joined by protected links stay together, which gives another.
+    Robots joined by protected links stay together, and a cut link makes at most one group more: these give others.
     """
     n_robots, rest = threat.graph.n_robots, len(threat.graph.links) - threat.alpha_c
     counted = next(p for p in range(1, n_robots + 1) if rest <= links_within(n_robots, p))
     held = CommunicationGraph(n_robots, threat.protected_links)
-    return max(counted, *(len(group) for group in held.groups()))
+    most_groups = len(threat.graph.groups()) + threat.alpha_c
+    return max(counted, -(-n_robots // most_groups), *(len(group) for group in held.groups()))
 
 
 def by_caa(threat: Threat) -> LargestGroup:
