@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from ratt_opt._rounding import bracket_text, up
-from ratt_opt.report.lettering import literal
+from ratt_opt.report.lettering import in_lines, literal
 from ratt_opt.report.palette import INK, looks_of
 from ratt_opt.report.tables import share_text
 
@@ -18,12 +19,23 @@ __all__ = ["bar_ends", "draw_bars"]
 
 CLOSE = 0.5
 """From this share of the bound on, what is missing is drawn, not what is kept: one per cent stays visible."""
-ROOM = 2.5
-"""The axis ends at this many times the longest bar, so that the numbers beside the bars have room."""
-
-
 NOTHING = 1e-9
 """Less than this share of the bound is rounding: no whisker shows it, and it must not fill the axis."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BarRows:
+    """How a row of the panel is divided, in rows: a bar with its number above it.
+
+    ``thick`` : height of a bar; more of it leaves less room for the number.
+    ``beyond`` : length of the axis in longest bars, so that the dashed line is inside; more of it shortens the bars.
+    """
+
+    thick: float = 0.5
+    beyond: float = 1.04
+
+
+ROWS = BarRows()
 
 
 def bar_ends(report: Findings) -> tuple[bool, list[tuple[float, float]], float]:
@@ -47,20 +59,20 @@ def draw_bars(axes: Axes, report: Findings) -> None:
     looks = looks_of([plan.name for plan in plans])
     for row, (plan, (low, high)) in enumerate(zip(plans, ends, strict=True)):
         look, chosen = looks[plan.name], plan.name == report.recommended.name
-        axes.barh(row, low, color=look.colour, hatch=look.hatch, height=0.62, edgecolor="white", linewidth=0)
+        axes.barh(row, low, color=look.colour, hatch=look.hatch, height=ROWS.thick, edgecolor="white", linewidth=0)
         if high - low > least:
             axes.errorbar((low + high) / 2, row, xerr=(high - low) / 2, color=INK, capsize=5, linewidth=1.4)
         kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper, digits=6)
         share = share_text(plan.worst_case.lower, report.upper)
         text = f"{kept}, {share}" if share.startswith("optimal") else f"{kept}, {share} of the best"
-        at, weight = high + 0.02 * ROOM * longest, "bold" if chosen else "normal"
-        room = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}  # no line runs through the words
-        axes.text(at, row, text, va="center", ha="left", fontsize=9, weight=weight, bbox=room)
+        weight = "bold" if chosen else "normal"
+        above: dict[str, Any] = {"xytext": (4, 2), "textcoords": "offset points", "va": "bottom", "ha": "left"}
+        axes.annotate(text, (0, row - ROWS.thick / 2), fontsize=9, weight=weight, **above)
     axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
     axes.set_title(f"no plan can have more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
-    axes.set_yticks(range(len(plans)), [literal(plan.name) for plan in plans])
-    axes.invert_yaxis()
-    axes.set_xlim(0, ROOM * longest)
+    axes.set_yticks(range(len(plans)), [in_lines(plan.name) for plan in plans])
+    axes.set_ylim(len(plans) - 1 + ROWS.thick, -1 + ROWS.thick / 2)  # the first on top, its number inside
+    axes.set_xlim(0, ROWS.beyond * longest)
     unit = f"[{literal(report.unit)}] " if report.unit else ""
     what = "shortfall from the best possible" if missing else "value"
     axes.set_xlabel(f"{literal(report.objective)}: {what} under the worst attack\n{unit}(whiskers: not decided)")

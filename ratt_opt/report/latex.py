@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
-__all__ = ["latex_of", "latex_table"]
+__all__ = ["in_symbols", "latex_of", "latex_table"]
 
 SPECIAL = {
     "\\": r"\textbackslash{}",
@@ -30,6 +30,9 @@ SPECIAL = {
     ">": r"$>$",
 }
 """Characters that LaTeX would read as commands, or that its oldest fonts lack."""
+SYMBOLS = {"alpha_s": r"$\alpha_s$", "alpha_c": r"$\alpha_c$", "alpha_cs": r"$\alpha_{cs}$", "n_max": r"$n_{\max}$"}
+"""The paper's symbols of what the library writes in letters."""
+SYMBOL = re.compile(rf"(?<!\w)({'|'.join(SYMBOLS)})(?!\w)")
 NUMBER = re.compile(r"[\[+-]?\d.*")
 """What a cell begins with in a column that is set flush right."""
 
@@ -75,5 +78,16 @@ def _alignment(cells: Sequence[str]) -> str:
     return "r" if told and all(NUMBER.fullmatch(cell) and "," not in cell.lstrip("[") for cell in told) else "l"
 
 
+def in_symbols(text: str) -> str:
+    """Return a text with the paper's symbols as mathematics, which LaTeX and matplotlib read alike."""
+    return SYMBOL.sub(lambda found: SYMBOLS[found[0]], text)
+
+
 def _escaped(text: str) -> str:
+    """Return the text for LaTeX, with the paper's symbols."""
+    parts = SYMBOL.split(text)  # every second part is a symbol
+    return "".join(SYMBOLS[part] if k % 2 else _letters(part) for k, part in enumerate(parts))
+
+
+def _letters(text: str) -> str:
     return "".join(SPECIAL.get(character, character) for character in text)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from textwrap import wrap
 from typing import TYPE_CHECKING
 from unicodedata import normalize
 
@@ -16,7 +17,7 @@ from ratt_opt.errors import printable
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
-__all__ = ["Lettering", "choose_fonts", "literal"]
+__all__ = ["Lettering", "choose_fonts", "in_lines", "literal"]
 
 PLACEHOLDERS = "Last Resort"
 """A font that has a box for every letter, which tells a reader less than an escape."""
@@ -28,9 +29,11 @@ class Lettering:
 
     ``longest`` : letters of a name in a figure. More of them tell names apart that begin alike; they also cover other
     names and narrow the axes. The whole name stands in the tables.
+    ``line`` : letters of a line where a name is broken into lines, beside an axis; fewer leave more to the axes.
     """
 
     longest: int = 32
+    line: int = 16
 
 
 ROOM = Lettering()
@@ -43,11 +46,21 @@ def literal(text: str, room: Lettering = ROOM) -> str:
     - A letter that no installed font has, and what is not printable, are written as escapes: ``\u65e5``.
     - ``$`` begins no mathematics.
     """
+    return _kept(text, room).replace("$", r"\$")
+
+
+def in_lines(text: str, room: Lettering = ROOM) -> str:
+    """Return what :func:`literal` returns, broken into short lines."""
+    return "\n".join(wrap(_kept(text, room), room.line)).replace("$", r"\$")
+
+
+def _kept(text: str, room: Lettering) -> str:
+    """The letters of a text that are drawn."""
     kept = _shortened(normalize("NFC", printable(text)), room.longest)
     lacking = _lacking(kept)
     if lacking and _font_with(lacking) is None:
         kept = "".join(x.encode("unicode_escape").decode() if ord(x) in lacking else x for x in kept)
-    return kept.replace("$", r"\$")
+    return kept
 
 
 def choose_fonts(drawn: Artist) -> None:

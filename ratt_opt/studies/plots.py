@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.report.labels import halo
+from ratt_opt.report.latex import in_symbols
+from ratt_opt.report.legend import legend_outside
 from ratt_opt.report.lettering import choose_fonts, literal
 from ratt_opt.report.palette import PLANNERS, looks_of
 from ratt_opt.studies.statistics import headed
@@ -72,7 +75,11 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
     for at, width, planner, means, spread in _side_by_side(axes, groups, series):
         look: dict[str, Any] = {"color": looks[planner].colour, "hatch": looks[planner].hatch, "edgecolor": "white"}
         look |= {"linewidth": 0, "label": _label(planner)}
-        axes.bar(at, means, 0.9 * width, yerr=spread, capsize=2, error_kw=error, **look)
+        drawn = axes.bar(at, means, 0.9 * width, yerr=spread, capsize=2, error_kw=error, **look)
+        assert drawn.errorbar is not None
+        _, caps, lines = drawn.errorbar.lines
+        for artist in (*caps, *lines):
+            artist.set_path_effects(halo())  # else nobody sees them on a dark bar
     axes.axhline(0, color="black", linewidth=0.8)
 
 
@@ -88,11 +95,13 @@ def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Esti
         axes.errorbar(at, means, spread, label=_label(planner), ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look)
 
 
-def comparison(means: Sequence[Mean], note: str) -> Figure:
+def comparison(means: Sequence[Mean], note: str, unit: str = "") -> Figure:
     """Draw one metric's means of planners: a panel for each attacker, a group of marks for each case.
 
     Bars if the numbers are large against their differences from zero, as values are; points on a line at zero for
     differences.
+
+    ``unit`` : of values
     """
     attackers, cases = (list(dict.fromkeys(getattr(mean, name) for mean in means)) for name in ("attacker", "case"))
     shared, groups = _told_apart(cases)
@@ -106,15 +115,19 @@ def comparison(means: Sequence[Mean], note: str) -> Figure:
         draw = points if means[0].minus else bars
         draw(axes, groups, series)
         axes.axhline(0, color="black", linewidth=0.8)
-        axes.set_ylabel(
-            literal(headed(means[0].metric)) + (f"\nminus {_label(means[0].minus)}'s" if means[0].minus else "")
-        )
+        axes.set_ylabel(_quantity(means[0], unit))
         axes.set_title(f"attacker: {literal(attacker)}", loc="left", fontsize="medium")
     handles, labels = every[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=min(len(labels), 6), frameon=False)
-    figure.supxlabel("\n".join(filter(None, (shared, note))), fontsize="small")
+    legend_outside(figure, handles, labels, loc="outside upper center")
+    figure.supxlabel("\n".join(filter(None, (shared, note))), fontsize="small", wrap=True)
     choose_fonts(figure)
     return figure
+
+
+def _quantity(mean: Mean, unit: str) -> str:
+    """The words of the axis: the metric with its unit, and whose is taken off."""
+    minus = f"\ndifference from {_label(mean.minus)}" if mean.minus else ""
+    return literal(headed(mean.metric, unit)) + minus
 
 
 def _label(planner: str) -> str:
@@ -125,9 +138,14 @@ def _told_apart(cases: Sequence[str]) -> tuple[str, list[str]]:
     """Parts of names that all cases share, and those that tell each apart, a line for each part."""
     parts = [case.split() for case in cases]
     common = [part for part in parts[0] if all(part in other for other in parts)] if len(cases) > 1 else parts[0]
-    return fill(" ".join(map(literal, common))), [
-        "\n".join(literal(part) for part in own if part not in common) for own in parts
+    return fill(" ".join(_part(part) for part in common)), [
+        "\n".join(_part(part) for part in own if part not in common) for own in parts
     ]
+
+
+def _part(part: str) -> str:
+    """A part of a case's name with the paper's symbols."""
+    return in_symbols(literal(part))
 
 
 def _looks(planners: Iterable[str]) -> dict[str, Look]:

@@ -11,9 +11,13 @@ import numpy as np
 
 from ratt_opt._files import output_directory, write_together
 from ratt_opt.errors import InputError
+from ratt_opt.findings import value_unit
 from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.latex import latex_table
-from ratt_opt.studies.statistics import Mean, column, estimate, headed, select
+from ratt_opt.scenario.model import Scenario
+from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.studies.cases import Seeds
+from ratt_opt.studies.statistics import VALUES, Mean, column, estimate, headed, select
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -21,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
+    from ratt_opt.studies.cases import Case
     from ratt_opt.studies.study import Study
 
 __all__ = ["Results"]
@@ -49,6 +54,14 @@ class Results:
     def columns(self) -> dict[str, tuple[str, str, str]]:
         """Planner, attacker and metric of every measured column of numbers, by the column's name."""
         return {name: self._parts(name) for name in self._measured() if _are_numbers(self.rows, name)}
+
+    @property
+    def unit(self) -> str:
+        """Unit of the values, if it is the same in all cases, else empty."""
+        if not set(self.study.metrics) & set(VALUES):
+            return ""
+        units = {_unit(self.study, case) for case in self.study.cases}
+        return units.pop() if len(units) == 1 else ""
 
     def means(self, *, metric: str | None = None, minus: str | None = None) -> list[Mean]:
         """Mean and 95 % interval (Student's t) over the trials, for each case and measured column.
@@ -108,7 +121,7 @@ class Results:
             raise InputError("plot", "needs a study of planners and attackers", self.study.name)
         chosen = self.study.metrics[0] if metric is None else metric
         found = [mean for mean in self.means(metric=chosen, minus=minus) if mean.planner]
-        return comparison(found, self.note(minus))
+        return comparison(found, self.note(minus), self.unit)
 
     def save(self, folder: str | Path) -> list[Path]:
         """Write ``means.csv`` and ``means.tex``; of a study of planners also ``means.png`` and ``means.svg``.
@@ -150,7 +163,8 @@ class Results:
         )
         kept = [name for name in (*metrics, *other) if any((*key, name) in shown for key in keys)]
         rows = [[*key, *(shown.get((*key, name), "") for name in kept)] for key in keys]
-        return ["case", "attacker", "planner", *map(headed, kept)], rows
+        heads = [headed(name, self.unit, (minus or "") if name in metrics else "") for name in kept]
+        return ["case", "attacker", "planner", *heads], rows
 
     def note(self, minus: str | None = None) -> str:
         """Description of the numbers of a table or figure."""
@@ -188,6 +202,15 @@ class Results:
     def _check(self, argument: str, value: str | None, known: tuple[str, ...] | list[str]) -> None:
         if value is not None and value not in known:
             raise InputError(argument, f"must be {', '.join(known) or 'absent: there is none'}", value)
+
+
+def _unit(study: Study, case: Case) -> str:
+    """The unit of a case's values, asked of the problem of its first trial if the study makes its own."""
+    if study.problem is None:
+        return getattr(CRITERIA[case.objective], "unit", "")
+    made = study.problem(case, Seeds.of(study.seed, 0))
+    problem = made.problem(case.objective) if isinstance(made, Scenario) else made
+    return value_unit(problem.objective, getattr(made, "units", None))
 
 
 def _records(means: list[Mean]) -> list[dict[str, object]]:

@@ -20,7 +20,9 @@ __all__ = ["Estimate", "Mean", "Verdict", "column", "estimate", "headed", "judge
 LEVEL = 0.95
 """Confidence of every interval."""
 UNITS = {"trace": "m²", "mse": "m²", "rmse": "m"}
-"""Units of metrics; a value has that of its criterion."""
+"""Units of metrics; values have that of their criterion,"""
+VALUES = ("value", "proved")
+"""and these are values."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +132,11 @@ def players(rows: Sequence[Mapping[str, str]], metric: str) -> dict[str, tuple[s
     return {attacker: tuple(planners) for attacker, planners in found.items()}
 
 
-def headed(metric: str) -> str:
-    """A metric with its unit, if that is the same in every study."""
-    return f"{metric} [{UNITS[metric]}]" if metric in UNITS else metric
+def headed(metric: str, unit: str = "", minus: str = "") -> str:
+    """A metric with its unit, and the planner whose is taken off.
+
+    ``unit`` : of values, which have that of their criterion; empty if it is not known
+    """
+    own = unit if metric in VALUES else UNITS.get(metric, "")
+    what = f"{metric}, difference from {minus}" if minus else metric
+    return f"{what} [{own}]" if own else what

@@ -88,6 +88,30 @@ def test_bars_are_what_is_decided_and_whiskers_what_is_not(alpha_s, seconds):
     assert (undecided > 0) == (seconds < 1)
 
 
+@pytest.mark.parametrize("seed", [2, 3])
+def test_numbers_of_bars_cross_neither_the_line_nor_the_edges(seed):
+    """Far values (2) and close ones (3), where the line is on the left; planners with the longest names."""
+    scenario = ro.limited_view_scenario(5, 5, alpha_s=1, alpha_c=3, seed=seed, view=60)
+    scenario = scenario if seed == 2 else ro.random_scenario(5, 4, alpha_s=1, alpha_c=4, seed=seed)
+    own = {f"{'W' * 60}{k}": lambda problem: [choices[0] for choices in problem.choices] for k in range(2)}
+    for planners in ({}, own):
+        report = ro.bound(scenario, time_limit=0.5, planners=planners)
+        figure = plan_figure(report, picture_of(scenario, report))
+        figure.draw_without_rendering()
+        left, bars = figure.axes
+        numbers = [text.get_window_extent() for text in bars.texts]
+        (line,) = (line.get_window_extent() for line in bars.lines if line.get_linestyle() == "--")
+        names = [label.get_window_extent() for label in bars.get_yticklabels()]
+        assert len(names) == len(numbers) == len(report.plans)
+        assert all(box.x0 > line.x1 or box.x1 < line.x0 for box in numbers)
+        assert not any(a.overlaps(b) for a, b in combinations(numbers, 2))
+        assert all(figure.bbox.x0 < box.x0 < box.x1 < figure.bbox.x1 - 4 for box in [*numbers, *names])
+        assert all(bars.bbox.y0 < box.y0 < box.y1 < bars.bbox.y1 for box in numbers)
+        assert min(box.x0 for box in names) > left.get_window_extent().x1
+        longest = max(high for plan in report.plans for high in [plan.worst_case.upper])
+        assert bars.get_xlim()[1] <= 1.1 * max(longest, report.upper)
+
+
 def test_a_model_free_file_s_names_places_weights_and_protections_are_shown():
     rng = np.random.default_rng(0)
     plain = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import warnings
 from io import BytesIO
 from typing import TYPE_CHECKING
@@ -46,7 +47,7 @@ def shown(figure: Figure) -> list[str]:
 
     figure.savefig(BytesIO(), format="svg")
     texts = [artist.get_text() for artist in figure.findobj(Text) if isinstance(artist, Text)]
-    assert not any(map(is_math_text, texts))
+    assert not any(is_math_text(re.sub(r"\$\\alpha_[sc]\$", "", text)) for text in texts)  # the paper's symbols
     return [text.replace(r"\$", "$") for text in texts]
 
 
@@ -81,8 +82,9 @@ def test_names_of_planners_robots_and_targets_are_drawn_as_they_are() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         texts = shown(report.plot())
+    whole = ["".join(text.split()) for text in texts]  # beside a bar long names stand in lines
     for name in names:
-        assert texts.count(literal(name).replace(r"\$", "$")) >= 2  # on the map and beside a bar
+        assert whole.count("".join(literal(name).replace(r"\$", "$").split())) >= 2  # on the map and beside a bar
     assert sum("$t_{$" in text for text in texts) == 2
     assert all(len(text) < 200 for text in texts)
     assert "<svg" in report_view(report)

@@ -15,6 +15,7 @@ from scipy.stats import ttest_1samp
 
 import ratt_opt as ro
 from ratt_opt.studies import Case, Seeds, Study, SweepError, run
+from ratt_opt.studies.plots import comparison
 from tests.studies.own import STUDY, boldest, first_robot
 
 if TYPE_CHECKING:
@@ -95,7 +96,9 @@ def test_latex_has_a_row_for_each_case_and_planner_and_escapes_names(results) ->
     body = text[text.index("\\midrule") : text.index("\\bottomrule")].splitlines()[1:]
     assert len(body) == 2 * 3
     assert all(line.count(" & ") == 4 and line.endswith(r" \\") for line in body)
-    assert r"alpha\_s=1" in text
+    assert r"$\alpha_s$=1 $\alpha_c$=0" in text
+    assert "value [m$^2$]" in text
+    assert "value, difference from ratt [m$^2$]" in results.to_latex(minus="ratt")
     assert r"\caption{What planners\_keep}" in text
     assert text.count("{") == text.count("}")
     assert "begin{table}" not in results.to_latex()
@@ -227,6 +230,24 @@ def test_the_papers_figures_take_planners_and_attackers_of_ones_own(tmp_path: Pa
     names = {path.stem for path in tmp_path.glob("*.svg")}
     assert names == {"small_scale" + a + b for a in ("", "_first_robot") for b in ("", "_paired")}
     assert "boldest" in (tmp_path / "small_scale.svg").read_text()
+
+
+@pytest.mark.parametrize("n_planners", [5, 7])
+@pytest.mark.parametrize("minus", [None, "ratt"])
+def test_everything_of_a_figure_is_within_its_edges(results, n_planners, minus) -> None:
+    names = ["ratt", *("W" * 40 + str(k) for k in range(n_planners - 1))]
+    means = [replace(mean, planner=names[0]) for mean in results.means(metric="value") if mean.planner == "ratt"]
+    means = [replace(mean, planner=name, minus=minus or "") for name in names for mean in means]
+    figure = comparison(means, results.note(minus), results.unit)
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    texts = [*legend.get_texts(), figure._supxlabel, figure.axes[0].yaxis.label, figure.axes[0].title]
+    assert texts[0].get_text() == "RATT"
+    boxes = [legend.get_window_extent(), *(text.get_window_extent() for text in texts)]
+    assert all(figure.bbox.x0 <= box.x0 <= box.x1 <= figure.bbox.x1 for box in boxes)
+    assert all(figure.bbox.y0 <= box.y0 <= box.y1 <= figure.bbox.y1 for box in boxes)
+    assert not legend.get_window_extent().overlaps(figure.axes[0].get_tightbbox())
+    assert figure.axes[0].get_ylabel().startswith("value [m²]")
 
 
 def cameras(case: Case, seeds: object) -> ro.Scenario:
