@@ -31,12 +31,17 @@ def field_of(picture: Picture, i: int) -> tuple[float, float, float]:
     angle = 2 * np.pi if view.angle is None else view.angle
     if view.reach is not None:
         return float(picture.headings[i]), float(angle), view.reach
-    corners = picture.places if picture.targets is None else np.vstack([picture.places, picture.targets])
-    drawn = NEAREST_EDGE * float(np.linalg.norm(np.ptp(corners, axis=0)))
+    drawn = NEAREST_EDGE * _width(picture)
     if picture.watched is not None and picture.targets is not None and picture.watched[i].any():
         apart = np.linalg.norm(picture.targets[picture.watched[i]] - picture.places[i], axis=1)
         drawn = max(drawn, 1.05 * float(apart.max()))
     return float(picture.headings[i]), float(angle), drawn
+
+
+def _width(picture: Picture) -> float:
+    """The diagonal of the rectangle around robots and targets [m]."""
+    corners = picture.places if picture.targets is None else np.vstack([picture.places, picture.targets])
+    return float(np.linalg.norm(np.ptp(corners, axis=0)))
 
 
 def watched_pairs(picture: Picture, robots: Collection[int]) -> list[tuple[int, int]]:
@@ -47,7 +52,10 @@ def watched_pairs(picture: Picture, robots: Collection[int]) -> list[tuple[int, 
 
 
 def draw_fields(axes: Axes, picture: Picture, robots: Collection[int]) -> None:
-    """Draw a pale sector for each robot; it does not widen the map."""
+    """Draw a pale sector for each robot, and only the rim of one wider than half a turn, which would flood the map.
+
+    The map holds each whole, unless it reaches farther than the team and its targets are wide.
+    """
     from matplotlib.patches import Wedge
     from matplotlib.path import Path
 
@@ -58,7 +66,13 @@ def draw_fields(axes: Axes, picture: Picture, robots: Collection[int]) -> None:
         middle, half = np.degrees(heading), np.degrees(angle) / 2
         colour = BLINDED if i in picture.attack.sensing else SURVIVING if i in picture.best else LOST
         look: dict[str, Any] = {"facecolor": colour, "edgecolor": colour, "linewidth": 0.6, "zorder": 0.5}
-        axes.add_artist(Wedge(tuple(picture.places[i]), reach, middle - half, middle + half, alpha=0.13, **look))
+        is_wide = angle > np.pi
+        look |= {"fill": not is_wide, "alpha": 0.5 if is_wide else 0.13}
+        wedge = Wedge(tuple(picture.places[i]), reach, middle - half, middle + half, **look)
+        if reach <= _width(picture):
+            axes.add_patch(wedge)
+        else:
+            axes.add_artist(wedge)
     sector = Path.wedge(-30, 30)
     axes.scatter([], [], marker=sector, s=200, color=SURVIVING, alpha=0.4, label=_words(picture))
 

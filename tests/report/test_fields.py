@@ -81,6 +81,13 @@ def test_a_sector_is_the_field_of_view_and_holds_what_is_measured(drawn):
             pytest.approx(0, abs=1e-9)
         )
         assert reach is None or wedge.r == reach
+        assert wedge.get_fill() == (view <= 180)
+        low, high = figure.axes[0].transData.inverted().transform(figure.axes[0].bbox.get_points())
+        ends = wedge.center + wedge.r * np.array(
+            [[np.cos(a), np.sin(a)] for a in np.radians(np.linspace(wedge.theta1, wedge.theta2, 90))]
+        )
+        assert (ends >= low).all()
+        assert (ends <= high).all()
     for i, j in seen_by(picture, view, reach):
         assert np.linalg.norm(picture.targets[j] - picture.places[i]) <= field_of(picture, i)[2]
 
