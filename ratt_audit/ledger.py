@@ -214,7 +214,7 @@ def run_audit(
     whole: list[WholeRecord] = []
     with suppress(OutOfBudget), paced(own):
         _decide_all(own, entries, records, quick=quick, progress=progress)
-        if not quick:
+        if not quick and own.stop() is None:
             _decide_whole(own, entries, records, whole)
     complete = bool(entries) and len(records) == len(entries) and own.stop() is None
     _add_other_verdicts(entries[: len(records)], records)
@@ -262,10 +262,10 @@ def _decide_all(
 
 
 def refuted_lines(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> dict[tuple[str, str], list[ClaimEntry]]:
-    """Refuted lines about a plan and an attack, by label and kind; each with its refuted readings."""
+    """Refuted lines about a plan and an attack, by label and kind, of the entries that have records; with readings."""
     kinds = (EntryKind.STEP, EntryKind.AS_WRITTEN)
     lines: dict[tuple[str, str], list[ClaimEntry]] = {}
-    for entry, record in zip(entries, records, strict=True):
+    for entry, record in zip(entries, records, strict=False):
         is_line = entry.kind in kinds or entry.label == LEFT_SIDE
         if isinstance(entry, ClaimEntry) and is_line and record["verdict"] == Verdict.REFUTED.value:
             lines.setdefault((entry.label, entry.kind.value), []).append(entry)

@@ -23,11 +23,13 @@ ROWS = {
     "bound with certificate": lambda c, t: ro.bound(c.problem, time_limit=t, certificate=c.folder / "bound.json"),
     "breaking_budgets": lambda c, t: ro.breaking_budgets(c.problem, c.plan, c.half, time_limit=t),
     "certify": lambda c, t: ro.certify(c.problem, c.result, c.folder / "one.json", time_limit=t),
+    "certify_cuts": lambda c, t: ro.certify_cuts(c.graph, c.cuts, c.folder / "cuts.json", time_limit=t),
     "criticality_ranking": lambda c, t: ro.criticality_ranking(c.problem, c.plan, time_limit=t),
     "curvature": lambda c, t: ro.curvature(c.f, c.problem.robot, time_limit=t),
     "curvature of a plan": lambda c, t: ro.curvature(c.f, plan=c.plan, time_limit=t),
     "curvature of any function": lambda c, t: ro.curvature(c.own, time_limit=t),
     "exhaustive_optimum": lambda c, t: ro.exhaustive_optimum(c.small, time_limit=t),
+    "fewest_cuts": lambda c, t: ro.fewest_cuts(c.graph, c.robots // 4, time_limit=t),
     "find_modularity_violation": lambda c, t: ro.find_modularity_violation(c.table, time_limit=t),
     "find_monotonicity_violation": lambda c, t: ro.find_monotonicity_violation(c.own, time_limit=t),
     "find_negativity": lambda c, t: ro.find_negativity(c.own, time_limit=t),
@@ -154,6 +156,7 @@ class Case:
         self.graph = nx.gnp_random_graph(n, min(0.5, 12 / n), seed=1)
         links = self.graph.number_of_edges()
         self.on_graph = ro.Problem(self.f, owners, self.graph, n // 6, links // 5)
+        self.cuts = ro.fewest_cuts(self.graph, n // 4, time_limit=2)
         self.plan = ro.myopic(self.problem).elements
         self.half = 0.5 * self.f(self.plan)
         self.own = Cover(3 * n)
