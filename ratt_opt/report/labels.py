@@ -37,8 +37,14 @@ class Label:
 
 def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray]) -> None:
     """Write the labels in order; ``marks`` are the places that no word should cover."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     figure: Any = axes.figure
+    canvas: Any = FigureCanvasAgg(figure)
+    renderer = canvas.get_renderer()  # asked for once: matplotlib would make one for each word
     figure.draw_without_rendering()  # only now the scale of the axes is known
+    # Files are drawn in the layout in which words are placed; finding it anew for each took longer than the words.
+    figure.set_layout_engine("none")
     points = figure.dpi / 72
     taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
     for label in labels:
@@ -50,7 +56,7 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         boxes = []
         for x, y, side in SPOTS:
             word.set(position=(x, y), ha=side)
-            boxes.append(_box(word.get_window_extent()))
+            boxes.append(_box(word.get_window_extent(renderer)))
         chosen, _ = best_spot(boxes, taken, _box(axes.bbox))
         x, y, side = SPOTS[chosen]
         word.set(position=(x, y), ha=side)

@@ -64,6 +64,22 @@ def whisker_of(axes, row):
     return None
 
 
+def test_files_are_drawn_in_the_layout_in_which_words_were_placed(drawn, tmp_path, monkeypatch):
+    """To lay it out again for each file, and to make a renderer for each word, took a quarter of a save."""
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    executed = []
+    layout = ConstrainedLayoutEngine.execute
+    monkeypatch.setattr(ConstrainedLayoutEngine, "execute", lambda self, fig: executed.append(1) or layout(self, fig))
+    report, picture, _ = drawn
+    figure = plan_figure(report, picture)
+    placed = [axes.get_position().bounds for axes in figure.axes]
+    for name in ("plan.png", "plan.svg"):
+        save_figure(figure, tmp_path / name)
+    assert len(executed) == 1
+    assert [axes.get_position().bounds for axes in figure.axes] == placed
+
+
 @pytest.mark.parametrize(("alpha_s", "seconds"), [(1, 60.0), (10, 60.0), (5, 1e-3)])
 def test_bars_are_what_is_decided_and_whiskers_what_is_not(alpha_s, seconds):
     """Close values are drawn as what misses to the bound, far ones as what is kept; 10 of 10 blinded keep nothing."""
