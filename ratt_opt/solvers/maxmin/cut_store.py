@@ -68,13 +68,17 @@ class CutStore:
         """Add the tangent of a group's value at the posterior information ``point``; return its index."""
         return self.add(outcome, group, tangent_cut(self.task.problem, self.pool.groups[group], point, target))
 
-    def touching(self, outcome: int, group: int, selection: FloatArray) -> int:
-        """Add the lowest cut on a group at a relaxed choice (E,), whatever its sum; return its index."""
+    def touching(self, outcome: int, group: int, elements: IntArray, point: FloatArray | None = None) -> int:
+        """Add the lowest cut on a group at elements of any number, whatever its sum; return its index.
+
+        ``point`` : (M, d, d) the group's posterior information there, if it is known
+        """
         if self.rows is not None:
-            return self.add(outcome, group, self.rows.row_at(group, selection))
-        objective = self.task.objective
-        inside = np.isin(self.task.problem.robot, self.pool.groups[group])
-        return self.tangent(outcome, group, objective.posterior_mixture(selection * inside))
+            return self.add(outcome, group, self.rows.row_at(group, self.task.indicator(elements)))
+        if point is None:
+            own = np.isin(self.task.problem.robot[elements], self.pool.groups[group])
+            point = self.task.objective.posterior_information(elements[own])
+        return self.tangent(outcome, group, point)
 
     def add(self, outcome: int, group: int, cut: GroupCut | Row) -> int:
         """Add a cut; return its index."""

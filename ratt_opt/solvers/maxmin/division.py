@@ -130,14 +130,14 @@ class Division:
     def _settle(self, node: TreeNode) -> None:
         """Finish a node of a single plan: a tangent at the plan itself is exact there."""
         objective = self.task.objective
-        plan = [int(choice[0]) for choice in node.choices]
+        plan = np.array([choice[0] for choice in node.choices])
         points = self.pool.group_points(objective.information[plan])
         values, winners = objective.value(points), self.by_winner.winners.at(node)
         decided = np.flatnonzero(winners >= 0)
         if len(decided):
             outcome = int(decided[values[winners[decided]].argmin()])
             group = int(winners[outcome])
-            leaf = Leaf(cuts=(self.cuts.touching(outcome, group, self.task.indicator(plan)),), weights=(1.0,))
+            leaf = Leaf(cuts=(self.cuts.touching(outcome, group, plan, points[group]),), weights=(1.0,))
             node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])
         self.frontier.settle(node)
 

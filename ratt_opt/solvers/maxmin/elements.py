@@ -62,10 +62,10 @@ class Task:
         """All elements of one robot that are equal to one of these."""
         return tuple(sorted(e for first in elements.tolist() for e in self.classes[robot][first]))
 
-    def indicator(self, elements: Sequence[int]) -> FloatArray:
+    def indicator(self, elements: IntArray) -> FloatArray:
         """(E,) 1 for these elements, 0 for others."""
         chosen = np.zeros(self.objective.n)
-        chosen[list(elements)] = 1.0
+        chosen[elements] = 1.0
         return chosen
 
     def mixed(self, selection: FloatArray) -> FloatArray:

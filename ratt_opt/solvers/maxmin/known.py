@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.solvers.maxmin.cut_store import CutStore
 from ratt_opt.solvers.maxmin.frontier import ClosingRule
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
@@ -26,7 +28,7 @@ __all__ = ["Known"]
 class Known:
     """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node.
 
-    ``by_rows`` : whether cuts become rows of inequalities target by target
+    ``rows_from`` : nodes after which cuts become rows of inequalities target by target
     """
 
     task: Task
@@ -35,7 +37,7 @@ class Known:
     cuts: CutStore
     proofs: GroupProofs
     tables: SmallTables
-    by_rows: bool
+    rows_from: float
 
     @classmethod
     def of(cls, task: Task, incumbent: Incumbent, gap: float, *, by_rows: bool = True) -> Known:
@@ -52,5 +54,5 @@ class Known:
             cuts=cuts,
             proofs=GroupProofs(cuts, rule, incumbent.budget),
             tables=SmallTables(task, pool),
-            by_rows=by_rows and RowSeparation.fits(task),
+            rows_from=RowSeparation.first_node(task) if by_rows else np.inf,
         )

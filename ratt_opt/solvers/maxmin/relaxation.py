@@ -137,13 +137,21 @@ class NodeProgram:
 
 
 class CutRounds:
-    """The cuts in use at a node: usable ones that were stored, and tangents if its relaxed plan violates none."""
+    """The cuts in use at a node: usable ones that were stored, and tangents if its relaxed plan violates none.
 
-    def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary, *, by_rows: bool) -> None:
+    ``rows_from`` : nodes of all searches after which rows may take the place of tangents
+    """
+
+    def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary, *, rows_from: float) -> None:
         self.task, self.pool = cuts.task, cuts.pool
-        self.cuts, self.winners, self.adversary, self._by_rows = cuts, winners, adversary, by_rows
+        self.cuts, self.winners, self.adversary, self._rows_from = cuts, winners, adversary, rows_from
         self._solves, self._params = 0, RowParams()
         self._program = NodeProgram(self.task.objective.n, self.task.choices)
+
+    @property
+    def begins_with_rows(self) -> bool:
+        """Whether rows are for the first nodes already."""
+        return self._rows_from == 0
 
     def use(self, k: int) -> None:
         """Bring cut ``k`` into the program."""
@@ -157,17 +165,19 @@ class CutRounds:
         self._program.drop_idle(PATIENCE)
         if self._program.in_use:
             return
-        best = self.task.indicator([int(choice[self.task.singles[choice].argmax()]) for choice in node.choices])
+        best = np.array([choice[self.task.singles[choice].argmax()] for choice in node.choices])
+        points = self.pool.group_points(self.task.objective.information[best])
         for outcome, winner in enumerate(winners.tolist()):
             if winner >= 0 and len(self._program.in_use) < CUTS_A_ROUND:
-                self.use(self.cuts.touching(outcome, winner, best))
+                self.use(self.cuts.touching(outcome, winner, best, points[winner]))
 
     def solve(self, node: TreeNode) -> RelaxedPlan | None:
         """The relaxed plan of a node under the cuts in use, or ``None`` if HiGHS claims none."""
         self._program.allow(node.choices)
         self._solves += 1
         relaxed = self._program.solve(self.adversary.budget.seconds_left)
-        may_begin = self._by_rows and self.cuts.rows is None and not self.adversary.budget.is_over
+        budget = self.adversary.budget
+        may_begin = self.cuts.rows is None and budget.nodes >= self._rows_from and not budget.is_over
         if may_begin and (relaxed is None or self._solves > self._params.rounds):
             self._begin_rows(node)
             relaxed = self._program.solve(self.adversary.budget.seconds_left)

@@ -47,7 +47,7 @@ class BranchAndBound:
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
         self.frontier = Frontier(self.rule, depth_first=depth_first)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
-        self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary, by_rows=known.by_rows)
+        self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary, rows_from=known.rows_from)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
@@ -101,10 +101,11 @@ class BranchAndBound:
         self.frontier.current = node = narrowed
         nodes, stalls = turns.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
+        why_stop = turns.stop_within_node if self.rounds.begins_with_rows else turns.stop
         self.rounds.begin(node)
         while True:
-            relaxed = None if turns.stop_within_node() else self.rounds.solve(node)
-            if relaxed is None and (stop := turns.stop_within_node()) is not None:
+            relaxed = None if why_stop() else self.rounds.solve(node)
+            if relaxed is None and (stop := why_stop()) is not None:
                 return stop
             if relaxed is None:
                 self.division.divide(node, None)
@@ -167,13 +168,15 @@ class BranchAndBound:
         there the tangent is at most what all elements are worth together.
         """
         node = TreeNode(choices=self.task.choices, winners={}, bound=np.inf, leaf=Leaf(cuts=(), weights=()))
-        best = self.task.indicator(self.incumbent.candidates.best.tolist())
+        best, everything = self.incumbent.candidates.best, np.arange(self.task.objective.n)
+        points = self.pool.group_points(self.task.objective.information[best])
         for outcome in range(len(self.pool)):
             winner = self.winners.of(node, outcome)
             if winner is None:
                 continue
-            for selection in (best,) if len(self.cuts) else (best, np.ones_like(best)):
-                k = self.cuts.touching(outcome, winner, selection)
+            touched = [(best, points[winner]), *(() if len(self.cuts) else ((everything, None),))]
+            for elements, point in touched:
+                k = self.cuts.touching(outcome, winner, elements, point)
                 self.rounds.use(k)
                 leaf = Leaf(cuts=(k,), weights=(1.0,))
                 node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])

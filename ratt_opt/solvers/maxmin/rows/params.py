@@ -12,6 +12,9 @@ class RowParams:
     """What is kept and tried; none of it changes what is claimed.
 
     ``unseen`` : least share of pairs of an element and a target without information
+    ``seen`` : targets that an element sees in the mean; of more, searches in depth meet dead ends late, and rows begin
+        at the root. Camera teams of 10 see 1.6 and end in depth; of 20, 3.2, and coverage by 10 robots, 10, and do not
+    ``nodes`` : of all searches, before rows begin elsewhere: what ends without rows by then takes no longer with them
     ``rounds`` : linear programs with tangents of whole groups before rows begin: many searches end by then
     ``paired`` : elements of each target that tell most, whose pairs are base sets: stronger rows against more of them
     ``most_bases`` : base sets of all targets together; beyond it single elements that tell least are left out
@@ -26,6 +29,8 @@ class RowParams:
     """
 
     unseen: float = 0.25
+    seen: float = 2.5
+    nodes: int = 1_500
     rounds: int = 8
     paired: int = 6
     most_bases: int = 12_000

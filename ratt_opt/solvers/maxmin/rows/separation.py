@@ -56,6 +56,15 @@ class RowSeparation:
         unseen = 1 - task.objective.information.any(axis=(-2, -1)).mean()
         return task.objective.states("target_tangents") and bool(unseen >= params.unseen)
 
+    @staticmethod
+    def first_node(task: Task, params: RowParams | None = None) -> float:
+        """Nodes of all searches before rows begin: none if a search in depth seldom ends, infinite without rows."""
+        params = RowParams() if params is None else params
+        if not RowSeparation.fits(task, params):
+            return np.inf
+        seen = task.objective.information.any(axis=(-2, -1)).sum(axis=1).mean()
+        return 0 if seen > params.seen else params.nodes
+
     def at(self, selection: FloatArray, of_robot: FloatArray) -> RelaxedGroups:
         """What is known of a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d)."""
         objective = self.task.objective
