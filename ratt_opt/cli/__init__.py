@@ -7,31 +7,24 @@ Open ``program.py`` first: the list of commands, exit codes, errors in one line.
 streams, ``exit_codes.py`` how a command ends; ``interrupts.py`` and ``faults.py`` are the last line of defence.
 """
 
-import logging
+# Nothing else is imported here: an interrupt before `main` guards is Python's to show, with a traceback.
 import os
 import sys
-import warnings
-
-from ratt_opt.cli.exit_codes import FAULT, INTERRUPTED
 
 __all__ = ["main", "run"]
 
 
 def main() -> None:
     """Run the command line and exit."""
-    code = INTERRUPTED
     try:
-        from ratt_opt.cli.interrupts import ignore_interrupts
-
-        _hold_streams()
-        code = run(sys.argv[1:])
-        ignore_interrupts()
+        code = _run_and_ignore()
     except KeyboardInterrupt:  # outside of the command's own guards: nothing has begun, or all is done
-        from ratt_opt.cli.interrupts import ignore_interrupts
-        from ratt_opt.cli.terminal import fail
+        try:
+            code = _end_interrupted()
+        except KeyboardInterrupt:  # a second one, before interrupts were ignored
+            code = _end_interrupted()
+    from ratt_opt.cli.exit_codes import INTERRUPTED
 
-        ignore_interrupts()
-        code = fail("interrupted", INTERRUPTED)
     if code == INTERRUPTED:
         # A half-done import may complain on the way out.
         from ratt_opt.cli.terminal import abandon_output
@@ -39,6 +32,27 @@ def main() -> None:
         abandon_output()
         os._exit(code)
     sys.exit(code)
+
+
+def _run_and_ignore() -> int:
+    """The exit code of the program's own arguments; interrupts that come later are ignored."""
+    from ratt_opt.cli.interrupts import ignore_interrupts
+
+    _hold_streams()
+    code = run(sys.argv[1:])
+    ignore_interrupts()
+    return code
+
+
+def _end_interrupted() -> int:
+    """Say that the program was interrupted; further interrupts are ignored first."""
+    from ratt_opt.cli.interrupts import ignore_interrupts
+
+    ignore_interrupts()
+    from ratt_opt.cli.exit_codes import INTERRUPTED
+    from ratt_opt.cli.terminal import fail
+
+    return fail("interrupted", INTERRUPTED)
 
 
 def _hold_streams() -> None:
@@ -52,6 +66,9 @@ def _hold_streams() -> None:
 
 def _draw_into_files() -> None:
     """Whatever windows other programs draw into; not a word on fonts that lack a letter or cannot be kept."""
+    import logging
+    import warnings
+
     os.environ["MPLBACKEND"] = "agg"
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     warnings.filterwarnings("ignore", message=r"Glyph \d+ .* missing from")
@@ -59,6 +76,7 @@ def _draw_into_files() -> None:
 
 def run(arguments: list[str]) -> int:
     """Run one command line and return its exit code; every error is one line on standard error."""
+    from ratt_opt.cli.exit_codes import FAULT, INTERRUPTED
     from ratt_opt.cli.interrupts import Interrupts
 
     fault: Exception | None = None

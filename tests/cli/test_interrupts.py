@@ -32,11 +32,31 @@ def _run(program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("name", ["ratt_opt.cli.interrupts", "typer", "ratt_opt.cli.planning", "numpy", "pydantic"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "ratt_opt.cli.exit_codes",
+        "logging",
+        "ratt_opt.cli.interrupts",
+        "typer",
+        "ratt_opt.cli.planning",
+        "numpy",
+        "pydantic",
+    ],
+)
 def test_while_modules_are_imported(name: str) -> None:
     done = _run(DURING_IMPORT.format(name=name), "bound", "none.json", "--out", ".")
     assert done.returncode == 130
     assert done.stderr == "error: interrupted\n"
+
+
+def test_one_while_another_is_being_answered() -> None:
+    """Two early ones: the second, before interrupts are ignored, ended the program by the signal."""
+    twice = DURING_IMPORT.replace(
+        "from ratt_opt.cli", "sys.meta_path.insert(0, Interrupts({name!r}))\nfrom ratt_opt.cli"
+    )
+    done = _run(twice.format(name="ratt_opt.cli.interrupts"), "--version")
+    assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
 
 
 STUDY_IMPORT = (
