@@ -194,7 +194,7 @@ def bound(
         total_curvature=c,
         guarantees=sure,
         inapplicable={} if guarantees == "none" else inapplicable_guarantees(problem, alpha_cs),
-        omitted=_omitted(baselines, k or c, guarantees, planners or {}),
+        omitted=_omitted(baselines, guarantees, planners or {}) | _omitted_curvatures(guarantees, k=k, c=c),
         certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
@@ -319,9 +319,7 @@ def _check_planners(planners: Mapping[str, Planner]) -> None:
             raise InputError(f"planners[{name!r}]", "must be a function of the problem", type(planner).__name__)
 
 
-def _omitted(
-    baselines: tuple[PlanAssessment, ...], found: Curvature | None, guarantees: str, planners: Collection[str]
-) -> dict[str, str]:
+def _omitted(baselines: tuple[PlanAssessment, ...], guarantees: str, planners: Collection[str]) -> dict[str, str]:
     """What the report leaves out, and why."""
     planned = {plan.name for plan in baselines}
     omitted = {name: "interrupted" for name in planners if name not in planned}
@@ -329,9 +327,22 @@ def _omitted(
         omitted["nonrobust"] = "the best plan without attack was not found and proved in its share of the time"
     if guarantees == "none":
         omitted["guarantees"] = "not asked for"
-    elif found is None:
-        omitted["curvature"] = "the criterion falls, or breaks what it states of itself, by more than rounding"
-    elif guarantees == "quick" and found.stop is Stop.TIME:
+    return omitted
+
+
+def _omitted_curvatures(guarantees: str, *, k: Curvature | None, c: Curvature | None) -> dict[str, str]:
+    """Each of the two curvatures that is ``None``, and why; and whether the other could be narrower."""
+    found = k or c
+    if guarantees == "none":
+        return dict.fromkeys(("curvature", "total_curvature"), "guarantees were not asked for")
+    if found is None:
+        why = "the criterion falls, or breaks what it states of itself, by more than rounding"
+        return dict.fromkeys(("curvature", "total_curvature"), why)
+    if k is None:
+        omitted = {"curvature": "it is for submodular criteria; total_curvature is given instead"}
+    else:
+        omitted = {"total_curvature": "the criterion is submodular; curvature is given instead"}
+    if guarantees == "quick" and found.stop is Stop.TIME:
         omitted["a narrower curvature"] = f"guarantees are quick: {QUICK_SECONDS:g} s at most"
     return omitted
 

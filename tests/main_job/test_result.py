@@ -187,6 +187,22 @@ def test_guarantees_take_the_time_that_is_asked_for(tmp_path):
         ro.bound(scenario, guarantees="some")
 
 
+@pytest.mark.parametrize(
+    ("objective", "guarantees", "absent"),
+    [
+        ("logdet", "quick", {"total_curvature"}),
+        ("trace", "quick", {"curvature"}),
+        ("trace", "none", {"curvature", "total_curvature"}),
+    ],
+)
+def test_a_curvature_that_is_none_is_among_what_is_left_out(objective, guarantees, absent):
+    report = ro.bound(
+        ro.random_scenario(4, 2, alpha_s=1, alpha_c=1, seed=0), objective=objective, guarantees=guarantees
+    )
+    names = {"curvature", "total_curvature"}
+    assert {name for name in names if getattr(report, name) is None} == absent == names & set(report.omitted)
+
+
 def test_a_baseline_that_is_missing_is_named():
     report = ro.bound(ro.random_scenario(30, 10, alpha_s=3, alpha_c=30, seed=1), time_limit=0.5)
     names = {plan.name for plan in report.plans}
