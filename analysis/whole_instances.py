@@ -11,7 +11,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ratt_audit.appendix.entry import EntryKind
 from ratt_audit.appendix.printed import numbered
+from ratt_audit.report.findings import FAILS, line_outcomes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,14 +29,11 @@ KEY = "Boxes: groups that A* leaves. Orange: bait. Blue: greedy. Cross: blinded.
 
 
 def shown(document: LedgerDocument) -> list[WholeRecord]:
-    """Pick each step that fails for both meanings of A*, with its smallest instance."""
-    steps: dict[str, list[WholeRecord]] = {}
-    for record in document.get("whole_instances", []):
-        if record["kind"] == "step" and record["instance"] is not None:
-            steps.setdefault(record["label"], []).append(record)
-    certain = {entry["label"] for entry in document["entries"] if entry["kind"] == "step"}
-    holds = {e["label"] for e in document["entries"] if e["kind"] == "step" and e["verdict"] == "proved"}
-    return [min(found, key=_size) for label, found in steps.items() if label in certain - holds and len(found) > 1]
+    """Pick each step that fails in every reading, with its smallest instance."""
+    found = [record for record in document.get("whole_instances", []) if record["instance"] is not None]
+    failing = line_outcomes(document["entries"])[FAILS]
+    steps = [[r for r in found if (r["label"], r["kind"]) == (label, EntryKind.STEP)] for label in failing]
+    return [min(each, key=_size) for each in steps if each]
 
 
 def _size(record: WholeRecord) -> tuple[int, int, int]:

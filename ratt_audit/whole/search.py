@@ -47,7 +47,7 @@ class WholeSearch:
 
     largest: int = 5
     programs: int = 25
-    programs_in_all: int = 80
+    programs_in_all: int = 120
     curvature: Fraction = Fraction(1, 2)
 
 
