@@ -36,7 +36,7 @@ def information_input(prior, information, weights):
 
 def moment(poses, covariances):
     belief = ro.Belief(np.ones((1, 2)), np.eye(2)[None])
-    return ro.Moment(time=0.0, poses=poses, pose_covariances=covariances, belief=belief)
+    return ro.Moment(time=0.0, poses=poses, pose_covariances=covariances, belief=belief, refused=(0,))
 
 
 DOORS = {

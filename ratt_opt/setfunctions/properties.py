@@ -158,7 +158,7 @@ def find_monotonicity_violation(
     """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
 
     ``tolerance`` : how negative counts, relative to the largest absolute value of the function; of criteria, at least
-        what rounding may do: they are differences from a prior's, which may be large beside them
+    what rounding may do: they are differences from a prior's, which may be large beside them
     ``trials``, ``seed`` : of the sampled search, if the ground set has more than 24 elements or time is short
     ``time_limit``, ``max_evaluations`` : seconds, a minute by default, and values of ``f``, unlimited by default
     ``budget`` : an outer search's budget: its seconds and interrupts count too

@@ -40,7 +40,7 @@ def test_audit_writes_three_files_and_prints_counts(tmp_path: Path, capsys: pyte
     assert document["complete"]
     assert {entry["label"] for entry in document["entries"]} == set(LABELS)
     assert "refuted" in shown.out
-    assert "Whose worst attack is A*? If A* is the plan's worst attack, 1 step fails." in shown.out
+    assert "Whose worst attack is A*? A* is worst within the group of the line here" in shown.out
     assert shown.err == ""  # progress is for terminals
     assert "\x1b" not in shown.out
 

@@ -134,15 +134,3 @@ def test_the_last_part_may_be_left_out_where_there_are_covers(tmp_path):
         path.write_text(json.dumps({**document, "upper": document["upper"] | covers}))
         assert decisions([path]) == [python_decision(path)]
         assert decisions([path])[0] in codes
-
-
-@pytest.mark.parametrize("kind", ["trace", "logdet"])
-def test_version_1_has_covers_and_gains(kind, tmp_path):
-    path, names = tmp_path / "c.json", {"fenchel": "cuts", "part": "attack", "element": "robot"}
-    document = limited_view(kind, 6, 0, path)
-    document |= {"version": 1, "lower": {"kind": "enumerated"}}
-    document["upper"]["tree"] = [
-        {names.get(name, name): value for name, value in node.items()} for node in document["upper"]["tree"]
-    ]
-    path.write_text(json.dumps(document))
-    assert decisions([path]) == [python_decision(path)] == [3]

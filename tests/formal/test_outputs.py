@@ -107,11 +107,11 @@ def test_the_identity_gives_the_whole_state(tmp_path):
 
 
 def test_rows_of_zeros_change_nothing(tmp_path):
-    """So outputs may have any number of rows, another one for each target."""
+    """So outputs may have up to as many rows as columns, another number for each target."""
     path = tmp_path / "c.json"
     for rng, document, _ in documents(tmp_path, range(12)):
         problem, upper, d = document["problem"], document["upper"], document["problem"]["dimension"]
-        more = rng.integers(0, 5, len(problem["output"])).tolist()
+        more = [int(rng.integers(0, d - len(c) // d + 1)) for c in problem["output"]]
         if problem["objective"] == "trace":
             wider = [
                 [

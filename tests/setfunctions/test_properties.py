@@ -240,7 +240,7 @@ class Slow(SetFunction):
     n = 24
 
     def evaluate(self, membership):
-        return np.array([float(sum(map(bool, row))) ** 0.5 for row in membership])
+        return np.array([float(sum(sum(map(bool, row)) for _ in range(40))) ** 0.5 for row in membership])
 
 
 def test_a_table_that_cannot_be_completed_is_not_begun():

@@ -33,7 +33,7 @@ class FewestCuts:
 
     ``groups`` : robots of each group that ``cut`` leaves
     ``prices`` : (N,) of robots, or ``None``. A connected group of at most ``size`` keeps links of at most the sum of
-        its prices, so at least the weight of all links less the sum of all prices is cut: :attr:`by_prices`
+    its prices, so at least the weight of all links less the sum of all prices is cut: :attr:`by_prices`
     ``reason`` : why ``lower`` holds, and which limit was met if it is not exact
     ``notes`` : what a user should know of the network
     ``nodes`` : of all searches
