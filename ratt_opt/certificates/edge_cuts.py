@@ -10,7 +10,7 @@ import numpy as np
 from ratt_opt._files import write_atomically
 from ratt_opt.attack.edge_cuts.fewest import cut_network, size_in_steps
 from ratt_opt.attack.edge_cuts.kept_links import proof_tree
-from ratt_opt.budget import Budget
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, VerifiedCuts, verify_cuts
 from ratt_opt.errors import ProofError
 
@@ -53,7 +53,10 @@ def certify_cuts(
         raise ProofError("no prices were proved: give fewest_cuts more time")
     prices = [int(price * network.unit * network.scale) for price in found.prices]
     room = size_in_steps(network, found.size)
-    tree = proof_tree(network, np.array(prices, dtype=np.int64), room, MOST_NUMBERS, Budget(time_limit))
+    try:
+        tree = proof_tree(network, np.array(prices, dtype=np.int64), room, MOST_NUMBERS, Budget(time_limit))
+    except OutOfBudget as out:
+        raise ProofError(f"the tree that proves the prices does not end in {time_limit} s") from out
     if tree is None:
         raise ProofError(f"the tree that proves the prices has more than {MOST_NUMBERS:,} numbers")
     links = sorted(network.links)

@@ -48,7 +48,7 @@ def test_solver_and_re_derived_bound_agree_on_one_group(kind):
         problem = ro.Problem(objective, np.repeat(np.arange(4), 3), None, 1, 0)
         attacks = [ro.Attack(frozenset({i}), frozenset()) for i in range(4)]
         bound = relaxation.relaxation_bound(problem, attacks)
-        assert bound.upper == pytest.approx(bound.claimed, rel=2e-4 if kind == "maxeig" else 1e-5)
+        assert bound.upper == pytest.approx(bound.claimed, rel=2e-4 if kind == "maxeig" else 2e-5)
 
 
 def test_a_lying_solver_gives_a_weak_bound_never_a_false_one(monkeypatch):
