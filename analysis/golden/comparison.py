@@ -35,8 +35,8 @@ def _gap(row: Row) -> float:
 
 
 def _is_closed(row: Row) -> bool:
-    """Say whether both ends meet, or the search says so: beside a worst case of 0 the rounding of an end is all."""
-    return row["stop"] in ("closed", "exhausted") or _gap(row) <= CLOSED[row["asked"]] * (1 + 1e-9)
+    """Say whether both ends meet; beside a lower end of 0, where no relative width can be small, ask the search."""
+    return (float(row["lower"]) <= 0 and row["stop"] == "closed") or _gap(row) <= CLOSED[row["asked"]] * (1 + 1e-9)
 
 
 def lost(then: Rows, now: Rows) -> list[tuple[str, str]]:

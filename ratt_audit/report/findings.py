@@ -196,8 +196,8 @@ def _whole_cell(record: WholeRecord | None) -> str:
     if record is None:
         return "-"
     parts = []
-    held = _teams(record, PROVED)
-    undecided = [team for team in _teams(record, None) if team not in held]
+    undecided = _teams(record, None)
+    held = [team for team in _teams(record, PROVED) if team not in undecided]
     if held:
         parts.append(f"{NO_INSTANCE} at (N, alpha_s, alpha_c) = {', '.join(held)}")
     if undecided:
