@@ -35,7 +35,7 @@ def _gap(row: Row) -> float:
 
 
 def _is_closed(row: Row) -> bool:
-    """Say whether both ends meet; beside a lower end of 0, where no relative width can be small, ask the search."""
+    """Say whether both ends meet; the search says it if the lower end is 0."""
     return (float(row["lower"]) <= 0 and row["stop"] == "closed") or _gap(row) <= CLOSED[row["asked"]] * (1 + 1e-9)
 
 
