@@ -1,4 +1,4 @@
-"""How far a set function's marginals can fall, over every domain: curvatures and ratios, exact or as brackets.
+"""Curvatures and ratios: bounds on how far marginals of a set function fall, exact or as brackets.
 
 Open ``curvature.py`` first (``ratios.py`` is its sibling). Over which sets marginals range: ``domains.py``. What is
 known of them: ``marginals.py``, by enumeration, or the least certain first by the searches of ``separable/`` (any

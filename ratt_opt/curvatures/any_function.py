@@ -1,4 +1,4 @@
-"""What is known of the marginals of any set function, however large its domain and slow its values.
+"""Bounds on the marginals of any set function, however large its domain and slow its values.
 
 Ends that hold: what theory says of the function (submodular, or a bound on its total curvature), monotonicity
 otherwise. Ends that are attained: the empty context, then contexts drawn at random.

@@ -50,7 +50,7 @@ class Domain:
 
     @property
     def is_submodular(self) -> bool:
-        """Whether theory proves it of the function."""
+        """Tell whether the function is known to be submodular by theory."""
         f = self.restricted
         return f.f.is_submodular if isinstance(f, Restricted) else f.is_submodular
 

@@ -186,12 +186,12 @@ class MarginalBrackets(ABC):
         return stop
 
     def marginals(self) -> Marginals:
-        """What is known, with the contexts that attain the ends."""
+        """Return the bounds on the marginals, with the contexts that attain them."""
         smallest, largest = self._attaining()
         return Marginals(self.least, self.seen_least, self.seen_most, self.most, tuple(smallest), tuple(largest))
 
     def _begin(self) -> Stop | None:
-        """What to do for all elements before the first is refined; why to stop already, if at all."""
+        """Prepare all elements before the first one is refined; return a reason to stop at once, if any."""
         return None
 
     @abstractmethod

@@ -164,7 +164,7 @@ def generalised_curvature(
         kept, upper = exact, complement_above(exact.least)
         how, stop = "every nested pair of sets", Stop.EXHAUSTED
     else:
-        # The same total curvature compares a marginal with any other of its element, not only with earlier ones.
+        # Total curvature compares a marginal with any other of its element, not only with earlier ones.
         found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner)
         kept, upper = _searched_kept(domain, found, seed, inner), found.upper
         how, stop = f"at most the curvature ({found.how}); a searched pair", found.stop

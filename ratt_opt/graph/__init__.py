@@ -1,4 +1,4 @@
-"""What an adversary can do to a team's communication: who can still pool measurements, and how few.
+"""Attacks on a team's communication: the groups that they leave, and the smallest possible largest group.
 
 Open ``threat.py`` first: it alone holds the graph and the budgets. ``outcomes.py`` lists what attacks leave, from the
 partitions of ``connected_partitions.py`` or the sizes of ``survivor_sizes.py``; ``threshold.py`` and its compiled form

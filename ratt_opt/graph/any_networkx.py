@@ -91,7 +91,7 @@ def _name(node: Hashable, attributes: Mapping[str, object]) -> str:
 
 
 def _place(node: Hashable) -> tuple[object, ...]:
-    """Where a node stands in the order; keys of one kind compare with each other."""
+    """Return the sort key of a node; keys of one kind compare with each other."""
     if isinstance(node, Real) and node == node:  # noqa: PLR0124  (NaN has no place)
         return (0, node)
     if isinstance(node, str):

@@ -20,7 +20,7 @@ Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
 
 RECIPE = " (communication_graph makes one)"
-"""What a refusal advises that :func:`ratt_opt.communication_graph` would have prevented."""
+"""Advice in refusals of graphs that :func:`ratt_opt.communication_graph` would make valid."""
 
 
 def neighbour_masks(n_robots: int, links: Iterable[Link]) -> list[int]:

@@ -60,7 +60,7 @@ class SubsetLattice:
 
 
 def _connected(neighbours: list[int], masks: IntArray) -> BoolArray:
-    """Whether each subset is connected: grow its lowest robot's component until it is stable."""
+    """Test which subsets (bit masks) are connected: grow the lowest robot's component until it is stable."""
     reached = masks & -masks
     while True:
         grown = reached.copy()

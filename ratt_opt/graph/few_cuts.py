@@ -24,7 +24,7 @@ MOST_ATTACKS = 20_000
 
 
 def attacks_are_few(threat: Threat) -> bool:
-    """Whether all attacks of the whole budgets can be tried one by one."""
+    """Test whether all attacks that use the whole budgets are few enough to enumerate."""
     cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
     blinded = comb(threat.graph.n_robots - len(threat.protected_robots), threat.n_blinded)
     return cuts * blinded <= MOST_ATTACKS

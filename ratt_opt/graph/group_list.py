@@ -75,7 +75,7 @@ class GroupList:
 
     @property
     def is_complete(self) -> bool:
-        """Whether all are listed."""
+        """Tell whether the list holds every group."""
         return bool(self._position[0] == self.robots and self._position[1] == 0)
 
     def go_on(self) -> None:

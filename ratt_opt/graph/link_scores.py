@@ -1,4 +1,4 @@
-"""What groups of a number of robots score at best: an attack's groups must score enough together.
+"""Largest scores of groups by number of robots: an attack's groups must score enough together.
 
 A group ``g`` with ``e(g)`` links inside and degrees ``d`` (in the whole graph) scores, for a share ``w`` in [0, 1],
 
@@ -40,7 +40,7 @@ robots (dense, disks of mean degree 12, hubs): with 3 the vectors of dense graph
 disks and hubs are a little finer; 6 take a quarter of a second at 30 robots, one at 50."""
 
 NODES = 100
-"""To decide whether a set of robots may be in a group that scores enough: about a tenth of a second. Not measured."""
+"""Nodes for deciding whether a group that scores enough may hold a set of robots: about 0.1 s. Not measured."""
 
 MARGIN, ROUNDING = 1e-6, 1e-11
 """Relative and absolute, and of the largest multiplier for each robot, added to bounds before they are rounded down:
@@ -49,10 +49,13 @@ eigenvalues and sums are off by some 1e-14 of the numbers that go into them."""
 
 @dataclass(frozen=True, slots=True)
 class LinkScores:
-    """For each share, groups of ``s`` robots score at most ``most[k, s]`` and all together ``need[k]`` or more.
+    """Necessary condition on the groups of an attack.
+
+    For each share ``k``, a group of ``s`` robots scores at most ``most[k, s]``, and all groups together at least
+    ``need[k]``.
 
     ``most`` : (K, N + 1), minus infinity if no group of an attack has that many robots; ``need`` : (K,);
-    ``least`` : (K,) what each group scores at least
+    ``least`` : (K,) least score of each group
     """
 
     most: FloatArray
@@ -73,7 +76,7 @@ def link_scores(graph: CommunicationGraph, alpha_c: int, budget: Budget) -> Link
 
 @lru_cache(maxsize=8)
 def most_scores(graph: CommunicationGraph) -> MostScores:
-    """What is known of a graph; the same each time for the last few, so that what one search finds out others use."""
+    """Return the cached score bounds of a graph (the last few graphs), so that searches share them."""
     return MostScores(graph)
 
 
@@ -192,7 +195,7 @@ class RelaxedScores:
         object.__setattr__(self, "inner", across.T @ self.adjacent @ across)
 
     def around(self, members: BoolArray, others: BoolArray) -> tuple[float, RelaxedScores]:
-        """What these robots (N,) score alone, and what some of the others (N,) add to it."""
+        """Return the score of ``members`` (N,) alone, and the form of what some of the ``others`` (N,) add to it."""
         ties = self.adjacent[:, members].sum(axis=1)
         alone = float(ties[members].sum() - self.charge[members].sum())
         return alone, RelaxedScores(self.adjacent[np.ix_(others, others)], self.charge[others] - 2.0 * ties[others])

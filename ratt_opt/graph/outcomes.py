@@ -1,4 +1,4 @@
-"""Which robots can still pool measurements after an attack: non-dominated outcomes.
+"""Non-dominated outcomes of attacks: the families of robots that can still pool measurements.
 
 An outcome is the family of groups of non-blinded robots that an attack leaves. One outcome dominates another when it
 refines it (every group of the first lies in a group of the second): a non-decreasing objective is then no larger on the

@@ -65,7 +65,7 @@ class PossibleSizes:
         return tables
 
     def _is_possible(self, table: FloatArray, rest: FloatArray) -> bool:
-        """Whether groups of this table with groups of the other one score enough."""
+        """Test whether groups of this table and groups of the other one can score enough together."""
         return bool(((table + rest[:, ::-1]).max(axis=1) >= self._need).all())
 
     @property
@@ -76,7 +76,7 @@ class PossibleSizes:
         return next(k for k in sizes if self._is_possible(nobody, self._best[k].get(self.n_seeing, nobody - np.inf)))
 
     def largest(self, size: int) -> list[tuple[int, FloatArray]]:
-        """What a largest group of ``size`` unblinded robots must score (K,), with that many blinded ones inside.
+        """Scores (K,) required of a largest group of ``size`` unblinded robots, by the number of blinded ones inside.
 
         Only for those numbers of blinded robots with which groups of that many robots may score it.
         """

@@ -1,4 +1,4 @@
-"""What the adversary may do: the graph, the budgets, and what is out of reach."""
+"""The adversary's means: the graph, the budgets, and the robots and links that are protected."""
 
 from __future__ import annotations
 
@@ -55,10 +55,10 @@ class Threat:
 
     @property
     def links_alike(self) -> bool:
-        """Whether all links are alike to the adversary (complete graph, no protected link)."""
+        """Tell whether all links are alike to the adversary (complete graph, no protected link)."""
         return self.graph.is_complete and not self.protected_links
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether all robots and links are alike to the adversary (complete graph, nothing protected)."""
+        """Tell whether all robots and links are alike to the adversary (complete graph, nothing protected)."""
         return self.links_alike and not self.protected_robots

@@ -28,7 +28,7 @@ __all__ = ["PlanarSearch"]
 SLOPES = 4
 """Most slopes tried for one region: with 2, a fifth more regions and time; 8 change nothing."""
 SLOPE_SHARE = 0.1
-"""Another slope is tried if it could close more than this share of the gap; 0.03 to 0.3 do as well within 5 %."""
+"""Smallest share of the gap that another slope must be able to close; 0.03 to 0.3 do as well within 5 %."""
 NARROWEST = 1e-3
 """Sectors narrower than this are not halved again."""
 LARGEST_LEAF = 2048
@@ -58,7 +58,7 @@ class PlanarSearch:
 
     @property
     def exhausted(self) -> bool:
-        """Whether no region can hold a better marginal: the ends meet."""
+        """Tell whether no region can hold a better marginal: the bounds meet."""
         return self._weakest >= self.side.sign * self.attained.value
 
     @property
@@ -139,7 +139,7 @@ class PlanarSearch:
         mixed = float(along(np.arctan2(-total[2], -total[1])) @ side.added[:, region.target])
         added = side.sign * max(side.sign * mixed, side.sign * region.added)
         ceiling = found.level - found.slope * float(total[0] - np.hypot(total[1], total[2]))
-        # What the bound would be if the sector were just the mixture's own direction.
+        # Bound for a sector reduced to the mixture's own direction.
         exact = side.key(region, ceiling, found.slope, added)
         owed = exact - region.key > HALVING_SHARE * (side.sign * self.attained.value - exact)
         spread = self._spread(region.allowed, found)

@@ -1,4 +1,4 @@
-"""What the contexts of one element consist of, the levels and marginals they lead to, and descent to an extreme one.
+"""Contexts of one element: their options, levels and marginals, and descent to an extreme one.
 
 Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.planar_levels.PlanarLevels`.
 """
@@ -25,7 +25,7 @@ __all__ = ["Options", "PlanarDescent", "along", "levels", "marginals"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Options:
-    """What the owners other than one element's may add: K options of R owners, "none" being each one's first.
+    """Options of the owners other than one element's: K options of R owners, "none" being each one's first.
 
     ``elements`` : (K,), -1 for none; ``owners`` : (K,) 0..R-1; ``first`` : (R,) their "none"; ``parts`` : (K, 3, M).
     """
@@ -69,7 +69,7 @@ def marginals(total: FloatArray, added: FloatArray) -> FloatArray:
 
 
 def _smallest(total: FloatArray) -> FloatArray:
-    """As ``levels(total).min(axis=-1)``; several times as fast without ``hypot``."""
+    """Compute ``levels(total).min(axis=-1)``, several times as fast without ``hypot``."""
     even, odd = total[..., 1, :], total[..., 2, :]
     return np.asarray((total[..., 0, :] - np.sqrt(even * even + odd * odd)).min(axis=-1))
 

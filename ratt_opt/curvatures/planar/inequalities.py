@@ -1,4 +1,4 @@
-"""What inequalities between the smallest levels before, ``P``, and after, ``Q``, say about ``1/P - 1/Q``."""
+"""Bounds on ``1/P - 1/Q`` from linear inequalities between the smallest levels before, ``P``, and after, ``Q``."""
 
 from __future__ import annotations
 

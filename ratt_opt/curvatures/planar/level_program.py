@@ -1,4 +1,4 @@
-"""How far the smallest level of all targets can rise above one target's own: a linear program over mixtures.
+"""Linear program over mixtures: bound on the smallest level of all targets above one target's own.
 
 For contexts ``S`` (one option an owner) let ``t(S)`` be the smallest level over all targets of ``base + S``. Let
 ``own(S)`` be the level of target ``j`` of ``own_base + S``, if its weakest direction, at double angle ``a``, lies in a
@@ -123,7 +123,7 @@ class MixtureProgram:
         self._program.option("simplex_strategy", DUAL)
 
     def change_slope(self, slope: float) -> None:
-        """Another objective."""
+        """Change the slope in the objective; the old solution stays feasible."""
         self._program.change_cost(slope * self._own)
         if self._solved:
             self._program.option("simplex_strategy", PRIMAL)

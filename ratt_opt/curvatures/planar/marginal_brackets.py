@@ -33,7 +33,8 @@ STUCK = 8
 """Parts bounded on one side before pairs of owners are tried for a better context: they take long.
 4 and 16 change the regions bounded by 2 %."""
 CONTENDER, LONG_STUCK = 1.1, 40
-"""The same if the ratio is more than this many times the smallest one seen; 20 to 80 are alike with 10 robots."""
+"""Ratio up to which an element is a contender, as a multiple of the smallest ratio seen; parts before pairs are tried
+for other elements (20 to 80 are alike with 10 robots)."""
 MOST_SPARE = 1e100
 """Finite, so that no product with an end that is 0 or infinite is undefined."""
 PATIENCE = 20
@@ -126,7 +127,7 @@ class PlanarBrackets(MarginalBrackets):
         del pool[:-POOL]
 
     def _spare(self, x: int, target: float) -> float:
-        """How many times what is proved of an element may fall short of what is seen: at least 1."""
+        """Return the factor (at least 1) by which an element's proved ratio may fall short of the one seen."""
         if not (self.seen_most[x] > 0 and 0 < target < np.inf):
             return 1.0
         return min(max(float(self.seen_least[x] / self.seen_most[x]) / target, 1.0), MOST_SPARE)
@@ -149,5 +150,5 @@ class PlanarBrackets(MarginalBrackets):
 
 
 def _pressing(doubt: float, nodes: int) -> float:
-    """Which side of an element to refine: the more doubtful one, less so the more parts it has taken."""
+    """Return the urgency of refining a side of an element: its doubt, discounted by the nodes spent."""
     return float(np.log(doubt) / np.sqrt(nodes + PATIENCE))

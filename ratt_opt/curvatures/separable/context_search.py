@@ -106,7 +106,7 @@ class ContextSearch:
 
     @property
     def exhausted(self) -> bool:
-        """Whether no part is left: the ends meet."""
+        """Tell whether no part is open: the bounds meet."""
         return not self._open
 
     @property
@@ -212,4 +212,4 @@ class FloorSearch:
         self.lower = min(floor, self.attained.value)
 
     def refine(self) -> None:
-        """Nothing is left to refine."""
+        """Do nothing: no part is open."""

@@ -87,7 +87,7 @@ class SeparableBrackets(MarginalBrackets):
         self.seen_least = np.minimum(self._single, marginals)
 
     def _is_over(self, searched: Sized) -> bool:
-        """Whether no further element is searched; of elements that are quick to look at, one is in any case."""
+        """Test whether to stop before the next element; one that is quick to evaluate is searched in any case."""
         is_quick = self._f.n * self._f.n_targets <= AT_ONCE
         return self._budget.stop() is not None and (len(searched) > 0 or not is_quick)
 
@@ -127,7 +127,7 @@ class SeparableBrackets(MarginalBrackets):
 
 
 def _inverses(information: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Which matrices (..., d, d) are regular, and their inverses; zero for the others."""
+    """Find the regular matrices (..., d, d) and their inverses; the others get zero."""
     inverse = np.zeros_like(information)
     if information.shape[-1] == 2:
         a, b, c = information[..., 0, 0], information[..., 0, 1], information[..., 1, 1]

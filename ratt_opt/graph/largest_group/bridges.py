@@ -114,7 +114,7 @@ def _lightened(robots: int, hanging: list[_Hanging], most: int, cuts: Cuts) -> i
 
 
 def _are_few(threat: Threat, beside: int) -> bool:
-    """Whether all choices of that many links beside bridges can be tried."""
+    """Test whether all choices of links among ``beside`` links that are no bridges can be enumerated."""
     return sum(comb(beside, k) for k in range(min(threat.n_cut, _cycles(threat) + 1))) <= MOST_CHOICES
 
 
@@ -125,7 +125,7 @@ def _cycles(threat: Threat) -> int:
 
 
 def is_nearly_a_tree(threat: Threat) -> bool:
-    """Whether all choices of links beside bridges can be tried."""
+    """Test whether all choices of links other than bridges can be enumerated."""
     at_least = max(_cycles(threat) - len(threat.protected_links), 0)  # on dense graphs that says enough
     return _are_few(threat, at_least) and _are_few(threat, len(_beside(threat)))
 

@@ -61,7 +61,7 @@ class LargestGroup:
 
     @property
     def is_exact(self) -> bool:
-        """Whether ``lower`` (checked) meets ``upper``."""
+        """Tell whether ``lower`` (checked) meets ``upper``."""
         return self.lower == self.upper
 
 

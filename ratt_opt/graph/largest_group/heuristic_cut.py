@@ -59,7 +59,9 @@ def heuristic_cut(threat: Threat, budget: Budget | None = None, *, ignoring: Col
 
 
 def _is_dense(weights: FloatArray) -> bool:
-    """Whether no two robots are more than two links apart: the cheapest cut is then a robot's, if links cost alike.
+    """Test whether any two robots are at most two links apart.
+
+    If links cost alike, the cheapest cut is then the links of one robot.
 
     Source: Plesnik 1975.
     """

@@ -38,12 +38,12 @@ TREES = "tree inequalities of a linear program, recomputed from their multiplier
 SCALE = 2.0**24
 """Multipliers become integers in these units: the sums below stay under 2^63."""
 TOWARDS_PROGRAM = 0.2
-"""Where trees are looked for: this far from the best point that keeps all inequalities to the program's. Measured at 50
-to 200 robots: 30 to 45 rounds; at the program's own point (1) more than 100, and at 200 robots no bound in a minute."""
+"""Point at which trees are separated, from the best one that keeps all inequalities (0) to the program's own (1).
+Measured at 50 to 200 robots: 30 to 45 rounds; at 1 more than 100, and at 200 robots no bound in a minute."""
 SLACK, SHORT = 1e-4, 1e-7
 """Trees that the program's point violates by less are not added; every link has at least this length."""
 MOST_TREES = 6_000
-"""Of a program: sparse graphs of 200 robots take 5,000; with more, programs of dense graphs take minutes."""
+"""Trees in a program, at most: sparse graphs of 200 robots take 5,000; with more, dense graphs take minutes."""
 
 SOON, LARGEST_SOON = 250_000, 3_000_000
 """Trees times links from which :func:`forced_size_soon` adds no more (0.1 to 2 s at 20 to 200 robots), and robots times
@@ -136,7 +136,10 @@ class TreeProgram:
         )
 
     def _needed(self, point: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
-        """What each robot's group keeps of every robot at ``point``; lengths and last steps of shortest paths."""
+        """Find the weight that each robot's group keeps of every robot at ``point``.
+
+        Also return lengths and last steps of shortest paths.
+        """
         from scipy.sparse import csr_array  # a quarter of a second
         from scipy.sparse.csgraph import dijkstra
 
@@ -194,7 +197,10 @@ class TreeProgram:
 
     @property
     def proved(self) -> int:
-        """From the last multipliers, in integers: every attack leaves some group unblinded robots of this weight."""
+        """Least weight of robots that are not blinded in some group after any attack.
+
+        Proved from the last multipliers, in integers.
+        """
         weights = np.rint(np.maximum(self.multipliers, 0.0) * SCALE).astype(np.int64)
         used = [(int(weights[k]), self.trees[k]) for k in np.flatnonzero(weights).tolist()]
         if not used:
