@@ -46,9 +46,9 @@ FALL, SLACK = 1e-12, 1e-9
 """Relative to the largest value: up to which a smaller one of a larger set is rounding; and what is taken off a bound
 found before, which is more than all falls on the way from set to set add up to."""
 FIRST_STEPS, MORE = 100_000_000, 4
-"""Of a search of covers, some tenths of a second, and times as many where it was left open; then a lower threshold is
-asked. No network of 16 to 24 robots that was tried, 75 of the corpus and 54 with random
-budgets, needed more than the first; a complete graph of 20 robots did."""
+"""Steps of the first search of covers (some tenths of a second), and their growth while it stays undecided.
+A lower threshold is tested after each. The first was enough for every network of 16 to 24 robots that was tried, 75 of
+the corpus and 54 with random budgets; a complete graph of 20 robots needed more."""
 LEVELS = 10
 """Values that are told apart once the bracket counts as closed, one threshold each. Mostly there are none."""
 NARROW = 1e-3
@@ -58,7 +58,7 @@ MOST_COLUMNS = 2_000_000
 
 
 def sets_can_be_looked_at(task: AttackTask) -> bool:
-    """Whether the loops have the objective and few enough robots, or all sets may be valued."""
+    """Tell whether all subsets of the team can be enumerated, by the compiled code or by their values."""
     n_robots, f = task.problem.n_robots, task.problem.objective
     if not has_loops(f):
         return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
@@ -132,7 +132,7 @@ class AllSets:
         return self._below
 
     def _value(self, robots: int | None) -> float:
-        """Of a set by bit mask, rounded as attacks' values are; infinite without one."""
+        """Return the value of a set (bit mask), rounded as attacks' values are; infinite without a set."""
         if robots is None:
             return np.inf
         return float(self._table[robots]) if self._team is None else self.task.values(robots_of(robots))
@@ -154,9 +154,9 @@ class AllSets:
             self._valued += len(masks)
 
     def _forget_what_relied_on_order(self) -> None:
-        """What was proved before counts where sets are worth no less than those inside them.
+        """Drop lower bounds that rely on a non-decreasing function, unless the table confirms it.
 
-        Elsewhere it relied on what is not so, and what the table says relies on nothing.
+        The least value of the table holds in any case.
         """
         bracket, table = self.task.bracket, self._table
         largest = float(np.abs(table).max())
@@ -166,14 +166,14 @@ class AllSets:
 
 
 def _falls(table: FloatArray, rounding: float) -> bool:
-    """Whether a set is worth less than one inside it, by more than rounding."""
+    """Test whether some set is worth less than one of its subsets, by more than rounding."""
     halves = (table.reshape(-1, 2, 1 << i) for i in range(len(table).bit_length() - 1))
     return any(bool((pairs[:, 1] < pairs[:, 0] - rounding).any()) for pairs in halves)
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """Whether the threshold is reachable, ``None`` if that is left open.
+    """Answer to a threshold question: ``is_reachable``, or ``None`` if undecided.
 
     ``level``, ``following`` : if it is not, what every attack leaves at least, and bit mask of the set that is worth it
     ``groups``, ``blinded`` : if it is, bit masks of the groups, and of the blinded robots

@@ -125,11 +125,11 @@ def strongest_left(single: FloatArray, threat: Threat) -> float:
 LARGEST_WEIGHT = 2**20
 
 TREE_SHARE, TREES_SHORT = 0.025, (0.05, 0.5)
-"""Of the rest of the budget for tree inequalities, which on dense graphs are not asked: there they used up their
-share and proved nothing; of a short search more, up to that many seconds, as the first threshold is half-way up from
-what they prove. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the attack in a
-minute, prices 75 % in a second. What they say of sizes counts more: on disk-12 of 50 robots, (10, 45), a group that
-keeps 18 is known after two seconds, 17 after one, and bounds of sizes say 97.2 instead of 96.6 % with it."""
+"""Share of the remaining budget for tree inequalities (sparse graphs only); share and seconds for a short search.
+On dense graphs trees used up their share and proved nothing. A short search gets more, as the first threshold lies
+half-way up from what trees prove. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the
+attack in a minute, prices 75 % in a second. Their bounds on sizes count more: on disk-12 of 50 robots, (10, 45), a
+group that keeps 18 is known after two seconds, 17 after one; with it bounds by sizes prove 97.2, not 96.6 %."""
 
 
 def bound_by_trees(task: AttackTask, objective: InformationObjective, *, is_about_values: bool) -> int:
@@ -169,7 +169,7 @@ def tree_bound(objective: InformationObjective, plan: IntArray, threat: Threat, 
 
 
 def _kept_value(objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, k: int) -> float:
-    """What a group of at most ``k`` robots that keeps the forced weight is worth at least."""
+    """Lower bound on the value of a group of at most ``k`` robots that keeps the forced weight."""
     weights = np.maximum(objective.value(objective.prior_information + k * objective.information[plan]) / k, 0.0)
     if not weights.max() > 0:
         return 0.0

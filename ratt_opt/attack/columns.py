@@ -25,7 +25,7 @@ __all__ = ["UNIT", "Column", "Columns", "ColumnsRecord", "Duals", "DualsRecord"]
 
 
 UNIT = 1 << 20
-"""Of integer duals, one link: with them reduced costs are exact."""
+"""Unit of integer duals: one link. Reduced costs are exact with them."""
 PART = 12
 """Robots of a table of sums of duals."""
 
@@ -54,11 +54,11 @@ class Duals:
 
     @property
     def record(self) -> DualsRecord:
-        """As C reads it."""
+        """Record that the C code reads."""
         return DualsRecord(address(self._sums), UNIT, self.blinding)
 
     def claim(self, n_blinded: int) -> int:
-        """What groups that cover the team cost at least, if no column has a negative reduced cost."""
+        """Return the dual bound: the least cost of a cover of the team, if no column has a negative reduced cost."""
         return int(self.robots.sum()) - n_blinded * self.blinding
 
 
@@ -113,7 +113,7 @@ class Columns:
         return len(self.groups)
 
     def some(self, places: IntArray | list[int]) -> list[Column]:
-        """Those at some places."""
+        """Return the columns at some places."""
         arrays = self.groups[places], self.cuts[places], self.blinded[places]
         return [Column(*of_one) for of_one in zip(*(array.tolist() for array in arrays), strict=True)]
 

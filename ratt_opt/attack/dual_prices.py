@@ -39,7 +39,7 @@ TOLERANCE = 1e-6
 stays well below MARGIN."""
 
 LOWERED = 0.003
-"""By which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
+"""Amount by which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
 
 FIRST_ATTEMPT, LONGER = 10_000, 3
 """Nodes of the first search for a column of a threshold, and their growth from search to search."""
@@ -52,8 +52,9 @@ MOVES, WARM = 1_500, (4.0, 0.1)
 group."""
 
 MOST_ROUNDS, ROUNDS_SHARE = 50, 0.05
-"""Of annealing at the prices that claim most, and of the seconds left for it. At 100 robots of hubs three seconds make
-a threshold at 94 % of the attack one of 800 nodes, which take more than 25,000 at the prices for few groups."""
+"""Rounds of annealing at the prices that claim most, and their share of the remaining seconds.
+At 100 robots of hubs, three seconds make a threshold at 94 % of the attack one of 800 nodes. At the prices for few
+groups it takes more than 25,000."""
 
 ROOM, NEW_GROUPS, LISTING = 100_000, 100, 2
 """Groups listed for covers; groups added to the program at a time; nodes that one of a listing counts for."""
@@ -79,7 +80,7 @@ class ThresholdDecision:
 
     @property
     def least(self) -> float:
-        """Nothing is known beside thresholds."""
+        """Minus infinity: this method decides thresholds and proves nothing else."""
         return -np.inf
 
     def learn(self, partition: Partition) -> None:
@@ -115,7 +116,7 @@ class ThresholdDecision:
         return Answer(verdict=Threshold.OPEN)
 
     def _priced(self, question: Question, nodes: int, budget: Budget) -> Threshold | None:
-        """Whether no group costs less than asked (REFUTED), some new one does (REACHED), or only known ones (OPEN).
+        """Price columns: REFUTED if no reduced cost is negative, REACHED if a new group's is, else OPEN.
 
         ``None`` : the search did not end after that many nodes; if the same is asked next, it goes on.
         """
@@ -132,7 +133,7 @@ class ThresholdDecision:
         return None
 
     def _is_too_much(self, question: Question) -> bool:
-        """Whether duals at which no group costs less than asked claim more links than the budget, as integers."""
+        """Test whether the dual bound exceeds the budget of links, in integers, if no reduced cost is negative."""
         claim = question.claim(self.threat.n_blinded) + min(question.limit, 0) * self._plan.robots
         return claim > 2 * self.threat.alpha_c * UNIT
 

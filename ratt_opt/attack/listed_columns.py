@@ -94,7 +94,7 @@ class ListedColumns:
         self._columns = Columns(groups.robots, masks.copy(), cuts.copy(), np.zeros_like(cuts))
         self._most_below = MostBelow(team, threshold, mask_of(threat.protected_robots))
         self._is_begun, self._restricted = False, 0
-        """Whether the strongest robots have their limits; limits that the columns have."""
+        """Flag that the strongest robots have their limits; number of limits that the columns have."""
         self._entered: list[Column] = []
         """Columns of the last program."""
         self._covers: tuple[Columns, ExactCover] | None = None
@@ -102,7 +102,7 @@ class ListedColumns:
 
     @property
     def limits(self) -> list[tuple[int, int]]:
-        """Those that are known (:class:`MostBelow`)."""
+        """Limits known so far (:class:`MostBelow`)."""
         return self._most_below.limits
 
     def decide(self, budget: Budget) -> Answer:

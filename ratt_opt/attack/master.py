@@ -108,7 +108,10 @@ def _program(robots: int, n_blinded: int, largest: float) -> LinearProgram:
 
 
 def _no_negative_costs(groups: Iterable[tuple[list[int], int]], cuts: ArrayLike, robots: int) -> Rows:
-    """That no group has a negative reduced cost; ``groups`` : robots of each and how many are blinded in it."""
+    """Build the rows that no group has a negative reduced cost.
+
+    ``groups`` : robots of each group, and how many of them are blinded
+    """
     entries = [([*members, robots], [*[1.0] * len(members), -float(need)]) for members, need in groups]
     return rows_of(entries, -inf, cuts)
 

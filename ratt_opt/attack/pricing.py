@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["BLINDED", "UNIT", "Column", "DualPrices", "GroupSearch", "Plan", "Question"]
 
 UNIT = 1 << 20
-"""Of duals, one link that leaves a group."""
+"""Unit of integer duals: one link that leaves a group."""
 MOST_PAIRED = 100
 """Robots of a team whose pairs are compared: for larger ones levels of single robots bound sets."""
 EFFORT, EFFORT_WORK = 200_000, 50_000_000
@@ -42,7 +42,7 @@ FINISHED = 0
 FIRST_CHUNK, GLANCE = 500, 0.02
 """Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
 BLINDED = 2
-"""What a robot is to a group; 1 is sensing, 0 outside."""
+"""State of a robot towards a group; 1 is sensing, 0 outside."""
 
 
 class QuestionRecord(Structure):
@@ -116,7 +116,7 @@ class Plan:
             yield Column(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
 
     def record(self, question: Question, robots: IntArray) -> QuestionRecord:
-        """As C reads it; everything it has the addresses of must be kept alive."""
+        """Record that the C code reads; all arrays that it has the addresses of must be kept alive."""
         team, links, tables = cast(byref(self.team.record), c_void_p), self.links, self.tables
         arrays = (
             links.start,
@@ -155,7 +155,7 @@ class DualPrices:
     links: float
 
     def scaled(self, links: float) -> DualPrices:
-        """The same prices in proportion, claiming that many links."""
+        """Scale the prices so that they claim that many links."""
         factor = links / self.links
         return DualPrices(robot=self.robot * factor, blinded=self.blinded * factor, links=links)
 
@@ -181,12 +181,15 @@ class Question:
     effort: int | None = None
 
     def is_same(self, other: Question) -> bool:
-        """Whether another question is this one."""
+        """Test whether another question equals this one."""
         numbers = [(q.threshold, q.most, q.blinding, q.limit, q.unit, q.effort) for q in (self, other)]
         return numbers[0] == numbers[1] and np.array_equal(self.duals, other.duals)
 
     def claim(self, n_blinded: int) -> int:
-        """What groups that cover the team cost at least, links from both sides, if no group costs less than nothing."""
+        """Return the dual bound: the least cost of groups that cover the team, each link counted twice.
+
+        Valid if no group has a negative reduced cost.
+        """
         return int(self.duals.sum()) - n_blinded * self.blinding
 
 

@@ -1,4 +1,4 @@
-"""Which sets of robots are worth less than a threshold, and the largest of these inside every set."""
+"""Sets of robots worth less than a threshold, and the largest of these inside every set."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ BLOCK = 12
 
 
 class SetsBelow:
-    """For each set of robots, as a bit mask, the size of the largest set inside it that is worth less than a threshold.
+    """Size of the largest subset worth less than a threshold, for each set of robots (bit mask).
 
     ``source`` : a :class:`Team`, whose sets are worth no less than those inside them, or (2**N,) the values of all sets
     ``protected`` : robots that cannot be blinded, and so are in every set inside

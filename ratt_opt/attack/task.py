@@ -1,4 +1,4 @@
-"""What attackers are given (one plan, what is known of it, and what may be spent), and what they return."""
+"""Task of an attacker (one plan, its known values, and the budget), and its result."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class PlanValues(SetFunction):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageRecord(Shown):
-    """What one stage of an attack did: seconds, nodes, and the bracket before and after [unit of the objective]."""
+    """Record of one stage of an attack: seconds, nodes, and the bracket before and after [unit of the objective]."""
 
     name: str
     seconds: float
@@ -103,7 +103,7 @@ class AttackResult(Shown):
     evaluations: int
     nodes: int = 0
     stages: tuple[StageRecord, ...] = field(default=(), compare=False)
-    """What ran, in order; of an exact attack."""
+    """Stages of an exact attack, in the order in which they ran."""
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data: unknown numbers are ``None``."""
@@ -151,12 +151,12 @@ class AttackBracket:
 
     @property
     def goal(self) -> float:
-        """Only a value below this counts as a worse attack; a lower bound that reaches it closes the bracket."""
+        """Cutoff: a worse attack has a value below it, and a lower bound that reaches it closes the bracket."""
         return self.upper - max(CLOSED_WIDTH * abs(self.upper), self.rounding)
 
     @property
     def is_closed(self) -> bool:
-        """Whether the bounds meet up to rounding."""
+        """Tell whether the bounds meet up to rounding."""
         return self.lower >= self.goal
 
     def offer(self, attack: Attack, value: float) -> bool:
@@ -190,7 +190,7 @@ class Resumable(Protocol):
 
 @dataclass(slots=True, eq=False)
 class AttackMemory:
-    """What attacks on one plan of one problem found out, for the next one to go on from.
+    """Resumable state of the attack on one plan of one problem.
 
     ``searched`` : the problem in other coordinates, or itself
     ``search`` : the last stage of an attack, once it was reached; ``seconds`` : that the stages before had shares of

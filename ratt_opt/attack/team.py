@@ -27,26 +27,26 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "TeamRecord", "has_loops", "work_of_value"]
 
 MOST_ROBOTS = 32
-"""Whose sets the loops have as masks of 32 bits; a team may have more."""
+"""Largest team whose subsets fit 32-bit masks; a team may have more robots."""
 MOST_TABULATED = 16
-"""Whose sets are valued in one call."""
+"""Largest team whose subsets are all valued in one call."""
 EXCHANGES = PaceParams(first=2**12, most=2**26)
 """Pairs of robots that exchanges try in one call."""
 LARGEST_DIMENSION = 64
-"""Of states, in the loops."""
+"""Largest dimension of states in the compiled code."""
 PLANE = 2
 """Dimension of states for which criteria are in closed form."""
 
 
 def has_loops(objective: SetFunction) -> TypeGuard[InformationObjective]:
-    """Whether the compiled loops have the criterion, and states of its dimension."""
+    """Tell whether the compiled code has the criterion and supports the dimension of its states."""
     if not isinstance(objective, InformationObjective):
         return False
     return objective.compiled_code is not None and objective.dimension <= LARGEST_DIMENSION
 
 
 def work_of_value(targets: int, dimension: int) -> int:
-    """Of one value of a set of robots, in about multiplications."""
+    """Estimate the multiplications for one value of a set of robots."""
     return targets * dimension**3
 
 
@@ -69,7 +69,7 @@ class TeamRecord(Structure):
 
 
 class Team:
-    """What the robots of one plan tell about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
+    """Information of the robots of one plan about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
     ``objective`` : a criterion that the loops have; ``weights`` : (M,) its own; ``prior`` : (M, T) prior information
     ``information`` : (N, M, T) of each robot's element
@@ -108,17 +108,17 @@ class Team:
 
     @property
     def is_planar(self) -> bool:
-        """Whether targets have states of two dimensions, for which there are sharper bounds."""
+        """Tell whether targets have states of two dimensions, for which there are sharper bounds."""
         return self.objective.dimension == PLANE
 
     @property
     def is_by_axis(self) -> bool:
-        """Whether a set is weak along one axis of one target, in the plane."""
+        """Tell whether one axis of one target decides the value of a set (planar states)."""
         return self.is_planar and self.objective.states("planar_levels")
 
     @property
     def whole_value(self) -> float:
-        """Of all robots together."""
+        """Value of all robots together."""
         return self.value(range(self.robots))
 
     @cached_property
@@ -137,7 +137,7 @@ class Team:
         return np.ascontiguousarray(self.prior + self.information[sorted(robots)].sum(axis=0))
 
     def value(self, robots: Iterable[int]) -> float:
-        """Of a set of robots."""
+        """Return the value of a set of robots."""
         sums = self.sums(robots)
         return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
 
@@ -162,7 +162,7 @@ class Team:
 
     @property
     def work(self) -> int:
-        """Of one value, in about multiplications."""
+        """Estimated multiplications for one value."""
         return work_of_value(self.record.targets, self.record.dimension)
 
 

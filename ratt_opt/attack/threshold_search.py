@@ -30,8 +30,8 @@ PATIENCE = 3
 and 4th with three seeds, and the ones before it the 19th, 34th and 3rd."""
 
 ANNEALING_SHARE, SHORT_SHARE, SHORT = 0.1, 0.3, 3.0
-"""Of the seconds left that starts may take; and of a short search, up to that many. At 50 robots of hubs
-patience took 34 s of 120 at first, the last 27 of them in vain."""
+"""Share of the remaining seconds for annealed starts; in a short search another share, up to that many seconds.
+At 50 robots of hubs patience took 34 s of 120 at first, the last 27 of them in vain."""
 
 FIRST_EFFORT, HARDER = 500_000, 4
 """Nodes of one enumeration before a threshold is left open, and their growth when the lower ones are exhausted."""
@@ -46,18 +46,18 @@ LONG, QUARTER = 50_000, 0.25
 nothing."""
 
 FOR_ONE, AS_LAST, LEAST = 0.35, 2.0, 10.0
-"""Of the seconds left, for one threshold while the bracket is wider than ``NEAR``; at least that many times as many as
-the last refutation took, and that many."""
+"""Limits of seconds for one threshold while the bracket is wider than ``NEAR``: a share of the remaining seconds,
+but at least a multiple of what the last refutation took, and at least a number."""
 
 REACH = 0.25
-"""Of the bracket, the next step where as many seconds are left as the last refutation took; less with less."""
+"""Share of the bracket for the next step if the remaining seconds equal the last refutation's; less with less."""
 
 RESOLUTION = 0.05
 """Share of the bracket below an open threshold that is not worth another bisection: more effort is."""
 
 
 class Threshold(Enum):
-    """What became of a threshold."""
+    """Verdict on a threshold."""
 
     REFUTED = "refuted"
     REACHED = "reached"
@@ -176,7 +176,7 @@ class ThresholdSearch:
         return None if below <= max(RESOLUTION * width, BISECTED * abs(bracket.upper)) else bracket.lower + below / 2
 
     def _anneal(self, starts: int, part: Budget) -> None:
-        """That many starts, and on until ``PATIENCE`` times as many as the best attack took."""
+        """Run ``starts`` annealed starts, and more until ``PATIENCE`` times as many as the best attack took."""
         bracket, done = self.task.bracket, 0
         while self._anneals and done < starts and not part.is_over:
             before = bracket.upper
@@ -202,5 +202,5 @@ class ThresholdSearch:
 
 
 def _annealing_part(budget: Budget) -> Budget:
-    """Of a budget, for starts."""
+    """Return the part of a budget for annealed starts."""
     return budget.part(ANNEALING_SHARE, at_least=min(SHORT_SHARE * budget.seconds_left, SHORT))

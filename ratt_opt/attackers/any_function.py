@@ -122,7 +122,7 @@ ALONE, BLINDS, TOGETHER, HALF = 0.15, 0.5, 0.2, 0.5
 with a chance of a half."""
 
 PRICE = 0.02
-"""Of a link too many, relative to the team's value."""
+"""Price of each link beyond the budget, relative to the team's value."""
 
 REMEMBERED = 200_000
 """Values of groups that are kept from start to start."""
@@ -194,7 +194,7 @@ class _Start:
                 task.offer_split(self._parts(), self._blind)
 
     def _energy(self) -> float:
-        """What the best group is worth, and the price of links too many."""
+        """Return the value of the best group, plus the price of links beyond the budget."""
         too_many = max(self._cut - self._task.problem.alpha_c, 0)
         return max(self._worth.values()) + PRICE * self._scale * too_many
 

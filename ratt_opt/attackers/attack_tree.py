@@ -41,7 +41,7 @@ class _Node(NamedTuple):
     left: int
     number: int
     group: tuple[int, ...]
-    """Of each robot placed, numbered as they began."""
+    """Group of each robot placed, numbered in the order of their first robots."""
     blind: tuple[bool, ...]
 
 

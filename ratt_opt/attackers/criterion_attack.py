@@ -32,7 +32,7 @@ MOST_LISTED, LISTING_SHARE = 3_000_000, 0.1
 for the list. A million take a tenth of a second on sparse graphs, and many more on dense ones of 50 robots."""
 
 BRIEFLY_LISTED = 20_000
-"""The same of a brief attack."""
+"""Groups that a brief attack lists at most."""
 
 LISTED_STARTS = 4
 """Annealed attacks before the first listed columns."""
@@ -49,12 +49,12 @@ fourth start finds the best attack of 24 robots where it is hardest to find (sma
 The first grow with the square of the robots beyond these 24: half a second of them at 24 robots, 1.4 s at 30."""
 
 INNER_NODES = 500_000
-"""Of the search by prices where another search asks and nothing is limited: some ten seconds. Rankings attack dozens of
+"""Nodes of the search by prices within another search without limits: some ten seconds. Rankings attack dozens of
 teams, none of which need ever close."""
 
 
 class CriterionAttack(TeamAttack):
-    """What the rows of the schedule are about."""
+    """Conditions and steps of the schedule's rows for a criterion."""
 
     def __init__(self, task: AttackTask, *, is_inner: bool) -> None:
         super().__init__(task, is_inner=is_inner)
@@ -70,7 +70,7 @@ class CriterionAttack(TeamAttack):
     # -- what the schedule asks ----------------------------------------------------------------------------------
 
     def is_small(self) -> bool:
-        """At most 12 robots."""
+        """Team of at most 12 robots."""
         return self.task.problem.n_robots <= SMALL
 
     def has_few_attacks(self) -> bool:
@@ -88,7 +88,7 @@ class CriterionAttack(TeamAttack):
         return self._team is not None and self._threat.links_alike and not self._team.is_planar
 
     def is_tabulated(self) -> bool:
-        """At most 24 robots, planar targets; else at most 20."""
+        """Planar targets and at most 24 robots; else at most 20."""
         return self._has_table
 
     def is_complete_but_for_protection(self) -> bool:
@@ -101,7 +101,7 @@ class CriterionAttack(TeamAttack):
         return self._prices is not None and is_narrow
 
     def may_list_columns_again(self) -> bool:
-        """The same, limit of time."""
+        """Listed columns possible, limit of time, budget left."""
         return self.may_list_columns() and not isinf(self.task.budget.seconds_left) and self.has_prices()
 
     def has_prices(self) -> bool:
@@ -136,7 +136,7 @@ class CriterionAttack(TeamAttack):
         return EveryAttack(self.task).run()
 
     def first_bound(self) -> None:
-        """What single robots and the forced size prove at once."""
+        """Raise the lower bound by single robots and the forced size."""
         self.task.bracket.raise_lower(first_bound(self._objective, self._plan, self._threat))
 
     def size_vectors(self) -> Stop:
@@ -204,7 +204,7 @@ class CriterionAttack(TeamAttack):
 
     @cached_property
     def _has_time_for_prices(self) -> bool:
-        """Whether budget was left when prices were first thought of."""
+        """Budget left when prices were first considered."""
         return self.task.budget.stop() is None
 
     @cached_property

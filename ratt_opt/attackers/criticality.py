@@ -1,4 +1,4 @@
-"""Which robots and links a plan hangs on, what they are worth protecting, and how much it takes to break the plan."""
+"""Critical robots and links of a plan, the gain from protecting them, and the budgets that break the plan."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ __all__ = ["BreakingBudget", "Criticality", "breaking_budgets", "criticality_ran
 CERTAIN = 1e-12
 """Gains below this share of the value are rounding, not gains."""
 BASE_SHARE = 0.3
-"""Of the time, for the plan's own worst attack: which gains are searched for hangs on it. Not measured."""
+"""Share of the time for the plan's own worst attack, which decides the gains to search for. Not measured."""
 ATTACK_SHARE = 0.1
-"""Of the time left, for each attack of a bisection. Not measured."""
+"""Share of the remaining time for each attack of a bisection. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +151,7 @@ class BreakingBudgets(tuple[BreakingBudget, ...]):
         return made
 
     def __getnewargs__(self) -> tuple[tuple[BreakingBudget, ...], Stop]:
-        """For copies."""
+        """Return the arguments for copies."""
         return tuple(self), self.stop
 
 

@@ -76,7 +76,7 @@ class EveryAttack:
         return float(cuts * (partition + blinded * value))
 
     def is_soon(self) -> bool:
-        """Whether all are tried in a share of the time that is left."""
+        """Tell whether all attacks can be enumerated in a share of the remaining time."""
         left = self._task.budget.seconds_left
         most = PARAMS.seconds if np.isinf(left) else PARAMS.share * left
         return not _are_many(self._threat, len(self._free)) and self.seconds <= most
@@ -126,6 +126,6 @@ class EveryAttack:
 
 
 def _are_many(threat: Threat, n_free: int) -> bool:
-    """Whether there are more attacks than any machine tries: their number need not be computed with."""
+    """Tell whether there are too many attacks to enumerate on any machine."""
     cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
     return cuts * comb(n_free, threat.n_blinded) > 10**12

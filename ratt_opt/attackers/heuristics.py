@@ -93,7 +93,10 @@ def heuristic_result(problem: Problem, values: PlanValues, attack: Attack) -> At
 
 
 def _on_complete_graph(problem: Problem, order: list[int], blinded: frozenset[int]) -> Attack:
-    """The same without going through the links: the next robot to be cut off has one link to each robot not yet so."""
+    """Isolate robots on a complete graph, without going through the links.
+
+    The next robot has one link to each robot that is not isolated yet.
+    """
     n_robots, left, alone = problem.n_robots, problem.alpha_c, list[int]()
     for robot in order:
         if robot in blinded:

@@ -1,4 +1,4 @@
-"""Which k robots to protect from blinding, so that the worst case of a plan gains most.
+"""Best k robots to protect from blinding, for the worst case of a plan.
 
 Let ``S`` be a best choice and ``P`` a part of it. If the worst attack on the team with ``P`` protected blinds no robot
 of ``S``, it stays possible under ``S``, so ``P`` is as good. Otherwise it blinds some robot of ``S`` outside ``P``. So

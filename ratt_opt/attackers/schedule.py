@@ -13,29 +13,32 @@ from ratt_opt.attackers.team_attack import TeamAttack as Team
 __all__ = ["CRITERION", "USER_FUNCTION"]
 
 SPATIAL_SHARE = 0.6
-"""Of the time left for families by their sizes where targets are not in the plane, before prices."""
+"""Share of the remaining time for families by their sizes, before prices (targets not in the plane)."""
 
 GREEDY_SHARE = 0.05
-"""Of the time left for greedy steps on networks, which at 500 robots of disk-6 took 36 of 40 seconds; annealed attacks,
-which come later, are worse for the team."""
+"""Share of the remaining time for greedy steps on networks.
+At 500 robots of disk-6 they took 36 of 40 seconds; annealed attacks, which come later, are worse for the team."""
 
 BOUND_SHARE, BOUND_NODES = 0.3, 500_000
-"""Of what is left, for the weakest group of the forced size; prices get the rest."""
+"""Share of the remaining time, and nodes, for the weakest group of the forced size; prices get the rest."""
 
 SOON_SHARE, LISTED_SHARE, LISTED_NODES = 0.4, 0.5, 20_000_000
-"""Of what is left, for columns of all groups that an attack may leave: after few annealed attacks, and after all. Most
-attacks with few links close in a fraction of a second; hubs of 30 robots have one that a few starts do not find."""
+"""Shares of the remaining time for columns of all groups that an attack may leave: after few annealed attacks, after
+all; nodes. Most attacks with few links close in a fraction of a second; hubs of 30 robots have one that a few starts do
+not find."""
 
 SIZES_SHARE = 0.7
-"""Of what is left for groups of possible sizes on dense graphs: they close most of them, and dual prices hardly any."""
+"""Share of the remaining time for groups of possible sizes on dense graphs: they close most, dual prices hardly any."""
 
 FIRST_BOUND_SHARE, FIRST_BOUND_NODES = 0.05, 20_000
-"""The same at first on dense graphs, for the attack that comes with it: one of the starts of annealing is from there,
-which at 50 robots ends at the worst attack once, and the others 10 % above."""
+"""Share of the remaining time, and nodes, for a first bound on dense graphs.
+The attack that comes with it is one of the starts of annealing: at 50 robots this start ends at the worst attack once,
+and the others 10 % above."""
 
 ANNEALED_SHARE = 0.5
-"""Of the seconds and values left for annealing by values alone; then all attacks are searched. Without it attacks on 24
-and 30 robots with a criterion of one's own were 0.6 to 6 % milder than the worst one after 5 s; with it 0 to 1 %."""
+"""Share of the remaining seconds and values for annealing by values alone, before all attacks are searched.
+Without it attacks on 24 and 30 robots with a criterion of one's own were 0.6 to 6 % milder than the worst one after 5
+s; with it 0 to 1 %."""
 
 USER_FUNCTION: tuple[Stage[Team], ...] = (
     Stage("single robots", Team.singles, Team.is_valued_at_once),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["attack_survey"]
 
 EXACT_SHARE = 0.9
-"""Of the seconds of a survey; the heuristics need little."""
+"""Share of a survey's seconds for the exact attack; the heuristics need little."""
 
 
 @interruptible

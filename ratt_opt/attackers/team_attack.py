@@ -24,7 +24,7 @@ def last_stage(task: AttackTask, search: Resumable) -> Stop:
 
 
 class TeamAttack:
-    """What the rows of a schedule are about, whatever the set function.
+    """Conditions and steps of the schedule's rows for any set function.
 
     ``is_inner`` : another search asks, or nodes are limited
     """
@@ -58,7 +58,7 @@ class TeamAttack:
         return self._is_limited and not (self._has_table or self.is_inner)
 
     def has_a_table(self) -> bool:
-        """At most 20 robots, values enough for all sets."""
+        """Team of at most 20 robots, and values left for all sets."""
         return self._has_table
 
     def is_limited(self) -> bool:
@@ -72,7 +72,7 @@ class TeamAttack:
     # -- the stages ----------------------------------------------------------------------------------------------
 
     def singles(self) -> None:
-        """What single robots and marginals prove."""
+        """Raise the lower bound by single robots and their marginals."""
         any_bound(self.task)
 
     def exchanges(self) -> None:
@@ -88,7 +88,7 @@ class TeamAttack:
         return try_every_attack(self.task)
 
     def tree_for_later(self) -> Stop:
-        """Nothing in the first call; the memory goes on in the next."""
+        """Keep a branch and bound in the memory; the next call continues it."""
         self.task.budget.check()
         self.task.memory.search = AttackTree(self.task)
         return self.task.budget.stop() or Stop.HEURISTIC

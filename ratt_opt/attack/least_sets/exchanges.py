@@ -33,9 +33,9 @@ WORK = 3_000_000
 FEWEST_STARTS = 4
 """Starts that every team gets, whatever they cost."""
 SEED = 0
-"""Of the random starts: the same for every call, so that attacks are reproducible."""
+"""Seed of the random starts: the same for every call, so that attacks are reproducible."""
 BARRED, INSIDE, OUTSIDE = 0, 1, 2
-"""Where a robot is; a barred one takes part in no exchange."""
+"""State of a robot; a barred one takes part in no exchange."""
 
 
 class Scan(Structure):
@@ -45,7 +45,7 @@ class Scan(Structure):
 
     @classmethod
     def new(cls) -> Scan:
-        """Nothing was looked at."""
+        """Return a scan that has tried no exchange."""
         return cls(0, -1, -1, np.inf)
 
 

@@ -1,4 +1,4 @@
-"""How many robots of a group can sense below a threshold; what was found answers later questions."""
+"""Largest number of sensing robots of a group below a threshold; answers are kept for later questions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["MostBelow"]
 
 NONE = -64
-"""Of a group whose protected robots alone are worth the threshold: more are to blind than there are."""
+"""Number for a group whose protected robots alone reach the threshold: more must be blinded than there are."""
 
 ENLARGING = 1_000
 """Nodes for the question whether a limit holds with one more robot. Without an end, these take ten times the seconds of
@@ -92,7 +92,7 @@ class MostBelow:
         return (group & below).bit_count() >= size and not group & self._protected & ~below
 
     def _is_below(self, group: int, size: int, budget: Budget, nodes: float = inf) -> bool:
-        """Whether ``size`` robots of a group, its protected ones included, are below the threshold.
+        """Test whether ``size`` robots of a group, its protected ones included, are below the threshold.
 
         After that many ``nodes`` they count as below.
         """

@@ -35,8 +35,9 @@ WHOLE, BY_AXIS = ((32, 200_000), (10**9, 40_000)), 10_000
 if one axis decides, as bounds are quick then. It decides 16 of 30 robots in 5,000, 21 in 100,000, 18 of 60 in 40,000,
 and 22 of 40 in 800,000, which branch and bound takes a third of the time for."""
 FEWEST, MOST = 1_000, 4_000
-"""The same at a node before it is divided: more after successes, fewer after failures. With ten times as many, 22 of 40
-and 32 of 60 robots took twice the time."""
+"""Fewest and most partial sets of the search in depth at a node, before it is divided.
+There are more after successes and fewer after failures. With ten times as many, 22 of 40 and 32 of 60 robots took twice
+the time."""
 HEAVY_ROBOTS = ((50, 4), (10**9, 5))
 """(Undecided robots up to, robots per target whose patterns the underestimator enumerates): few nodes are afforded
 above. Each doubles the polytopes and sharpens the bound: with two instead of four, 1.7 times the nodes at 40 robots."""

@@ -88,7 +88,7 @@ class DualProgram:
         return float(bound), soft.value
 
     def _record(self) -> ProgramRecord:
-        """As C reads it; it has the addresses of this program's arrays."""
+        """Record that the C code reads; it holds the addresses of this program's arrays."""
         (n_targets, n_heavy), n_patterns, n_robots = self.heavy.shape, len(self.patterns), len(self.information)
         arrays = (
             checked("first", self.first, np.int64, (n_targets + 1,)),
@@ -142,14 +142,14 @@ class DualProgram:
         return least
 
     def bound(self, multipliers: Multipliers, rest: FloatArray) -> float:
-        """What the multipliers prove; targets without points have no part in it."""
+        """Return the dual bound of the multipliers; targets without points have no part in it."""
         used = np.diff(self.first) > 0
         scores = np.einsum("fmt,mt->f", self.information, multipliers.slopes)
         np.add.at(scores, self.heavy[used].ravel(), multipliers.own[used].ravel())
         return float(self.least(rest)[used].sum() + np.partition(scores, self.size - 1)[: self.size].sum())
 
     def _screened(self, rest: FloatArray, margin: float) -> DualProgram:
-        """The same without the points whose ``rest`` is more than ``margin`` above their target's least."""
+        """Drop the points whose ``rest`` is more than ``margin`` above their target's least."""
         near = rest <= np.repeat(self.least(rest), np.diff(self.first)) + margin
         first = np.concatenate([[0], np.cumsum(near)])[self.first]
         return replace(self, first=first, pattern=self.pattern[near], values=self.values[near], light=self.light[near])

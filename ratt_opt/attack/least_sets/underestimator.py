@@ -146,7 +146,10 @@ def _normals(
 
 
 def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, closeness: FloatArray) -> FloatArray:
-    """At vertices that bind, the direction in which value minus underestimator grows: it cuts off what is not a set."""
+    """Separate: at vertices that bind, return the direction in which value minus underestimator grows.
+
+    A normal in this direction cuts off points that are no sets.
+    """
     target = np.repeat(np.arange(len(points.heavy)), np.diff(points.first))
     close = np.flatnonzero(closeness > 0)
     order = close[np.lexsort((-closeness[close], target[close]))]

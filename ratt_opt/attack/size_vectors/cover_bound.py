@@ -72,19 +72,19 @@ class SetClasses:
 
     @property
     def is_empty(self) -> bool:
-        """Whether some list has too few sets."""
+        """Tell whether some class has fewer sets than it needs."""
         return any(len(low.masks) < k for k, low in zip(self.counts, self.lists, strict=True))
 
     def and_sets(self, low: SetList, count: int) -> SetClasses:
-        """One more class."""
+        """Add a class: ``count`` sets of a list."""
         return replace(self, lists=(*self.lists, low), counts=(*self.counts, count))
 
     def where(self, keeps: Callable[[SetList], SetList]) -> SetClasses:
-        """Only the sets that are kept."""
+        """Filter every list."""
         return replace(self, lists=tuple(keeps(low) for low in self.lists))
 
     def having(self, c: int, mask: int) -> SetClasses:
-        """What is left once a set of class ``c`` is chosen."""
+        """Return the classes left after a set of class ``c`` is chosen."""
         counts = [k - (d == c) for d, k in enumerate(self.counts)]
         taken, chosen = self.taken | mask, np.uint64(mask)
         lists = [low.where(low.masks & chosen == 0) for low in self.lists]
@@ -117,7 +117,7 @@ class CoverBound:
         return np.maximum(self._theta - self.potentials, 0.0)
 
     def room(self, threshold: float) -> float:
-        """What the sets and robots of a family below the threshold cost at most."""
+        """Return the largest cost of the sets and robots of a family below the threshold."""
         return threshold - self.bound + MARGIN * abs(threshold)
 
     def columns(self, threshold: float) -> Columns:
@@ -213,7 +213,7 @@ class _DualProgram:
         return claim.x[:n] * self.scale, weights / total, float(self._cost @ claim.x) * self.scale
 
     def bound(self, potentials: FloatArray, weights: FloatArray) -> float:
-        """What these multipliers prove; the sets that hold it down enter the program."""
+        """Return the dual bound of these multipliers; the sets that bind enter the program."""
         classes, least = self.classes, []
         fresh: list[tuple[int, int]] = []
         for c, low in enumerate(classes.lists):

@@ -35,7 +35,7 @@ FEW, PACKING = 300, 3_000
 """Sets of the size of the largest group around which the others are packed one by one, and nodes of one packing
 question, before all families are searched at once."""
 NODES_OF_SET, NODES_OF_PACKING = 300, 30
-"""The same, a share of a threshold's nodes, in teams of which families are not searched."""
+"""Divisors of a threshold's nodes, for sets and for a packing question, in teams whose families are not searched."""
 
 
 @dataclass(slots=True)
@@ -68,7 +68,7 @@ class SizeDecision:
         return self._sets[self._smallest].least if self._smallest in self._sets else -np.inf
 
     def learn(self, partition: Partition) -> None:
-        """Nothing: attacks say nothing about other thresholds."""
+        """Ignore an attack: it proves nothing about other thresholds."""
 
     def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
         """Decide one threshold; ``OPEN`` after that many nodes.

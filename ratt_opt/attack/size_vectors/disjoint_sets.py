@@ -48,18 +48,18 @@ class SetList:
     values: FloatArray
 
     def where(self, kept: BoolArray) -> SetList:
-        """Those that are kept (K,)."""
+        """Return the sets that are kept (K,)."""
         return SetList(self.size, self.masks[kept], self.values[kept])
 
     def below(self, threshold: float) -> SetList:
-        """Those worth less than a threshold."""
+        """Return the sets worth less than a threshold."""
         count = int(np.searchsorted(self.values, threshold))
         return SetList(self.size, self.masks[:count], self.values[:count])
 
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """Only sets worth less than ``threshold`` whose robots' ``costs`` (F,) add up to less than ``room`` are listed."""
+    """Condition on listed sets: a value below ``threshold``, and robots' ``costs`` (F,) with a sum below ``room``."""
 
     threshold: float
     costs: FloatArray
@@ -111,7 +111,7 @@ class _Listing:
         return self._search.nodes
 
     def go_on(self, nodes: int) -> bool:
-        """Whether every set is decided."""
+        """Continue the listing for ``nodes`` nodes; return whether every set is decided."""
         stop = self._search.nodes + nodes
         while self._search.nodes < stop and self.count <= MOST_SETS:
             if self.count == len(self._masks):

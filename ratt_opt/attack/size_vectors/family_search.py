@@ -58,7 +58,7 @@ class SetLists:
         return None if known is None else known.below(threshold)
 
     def is_cheap(self, size: int) -> bool:
-        """Whether a list is known, or known to be short."""
+        """Tell whether a list is known, or sure to be short."""
         return size in self._known or comb(len(self.order), size) <= FEW_SETS
 
     def wanted(self, size: int, wanted: Filter, budget: Budget) -> SetList | None:
@@ -201,7 +201,7 @@ class FamilySearch:
         return []
 
     def _divided(self, node: _Node, together: FloatArray) -> list[_Node]:
-        """By which of a few sets is chosen, else by whether two robots are together; empty if all is clear."""
+        """Branch on one of a few sets, else on whether two robots are together; no children if the node is integral."""
         classes = node.classes
         c = min(range(len(classes.lists)), key=lambda d: len(classes.lists[d].masks))
         low, children = classes.lists[c], []

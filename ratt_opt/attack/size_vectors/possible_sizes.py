@@ -45,7 +45,7 @@ MOST_SETS = 20_000
 """Sets to ask about: a thousand take 2 to 7 seconds at 24 and 30 robots."""
 
 VECTORS_SHARE, MOST_NODES = 0.3, 3_000_000
-"""Of the budget left for the bound by size vectors, the rest for sets; nodes of each."""
+"""Share of the remaining budget for the bound by size vectors (the rest is for sets); nodes of each."""
 
 _SetValues = list[tuple[float, frozenset[int]]]
 

@@ -50,8 +50,8 @@ OF_EACH_SIZE, SOME_VECTORS = 4, 200
 """Vectors with each size of the largest group, and in all, that make attacks if there are too many."""
 
 FORCED_SHARE, FIRST_SHARE, ANNEALED_SHARE, PRICES_SHARE = 0.5, 0.2, 0.3, 0.5
-"""Of the time left: for the weakest set of the forced size; to test the attack in hand; for annealed attacks; for dual
-prices of robots and links."""
+"""Shares of the remaining time: for the weakest set of the forced size; to test the attack in hand; for annealed
+attacks; for dual prices of robots and links."""
 
 FIRST_EFFORT, EFFORTS = 200_000, (100_000, 10**8)
 """Nodes to test the attack in hand; of other thresholds, at first and at last. All attacks on 30 robots of the corpus
@@ -119,7 +119,7 @@ class SizeVectorSearch:
     # -- the stages ----------------------------------------------------------------------------------------------
 
     def blind_everyone(self) -> Stop:
-        """Nobody sees anything."""
+        """Blind every robot: none is left to sense."""
         self._accept((frozenset(),))
         self.bracket.lower = self.bracket.upper
         return Stop.CLOSED
@@ -141,7 +141,7 @@ class SizeVectorSearch:
         self.bracket.raise_lower(search.threshold)
 
     def test_attack(self) -> None:
-        """Whether any attack leaves less than the one in hand, by vectors of sizes."""
+        """Test by size vectors whether any attack leaves less than the one in hand."""
         while not self.bracket.is_closed:
             try:
                 answer = self._decision.decide(self.bracket.goal, self.task.budget, FIRST_EFFORT)
@@ -181,7 +181,7 @@ class SizeVectorSearch:
                 return
 
     def _are_alike(self, families: list[GroupExchanges]) -> bool:
-        """Whether an attack leaves groups that are about alike, and a limit of time is to be shared."""
+        """Test whether an attack leaves groups of about equal value while a limit of time is to be shared."""
         budget = self.task.budget
         if self._given is not None or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
             return False
@@ -214,4 +214,4 @@ STAGES: tuple[Stage[SizeVectorSearch], ...] = (
     Stage("dual prices", SizeVectorSearch.dual_prices, SizeVectorSearch.has_small_groups, PRICES_SHARE),
     Stage("thresholds", SizeVectorSearch.thresholds),
 )
-"""Of an attack on a complete graph, by vectors of sizes."""
+"""Stages of an attack on a complete graph, by size vectors."""

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 __all__ = ["GroupExchanges", "WeakFamilies", "weakest_of"]
 
 EXCHANGES_SHARE, SETTLED_SHARE, STRIDE = 0.2, 0.7, 20
-"""Of the time, at most spent on exchanges before the bounds, and of that, on families of all vectors before a few are
-shaken: large teams get fewer vectors, the first ones so far apart."""
+"""Shares of the time: for exchanges before the bounds, and of that, for families of all vectors before a few are
+perturbed. Large teams get fewer vectors, with that stride between the first ones."""
 
 SHAKEN, SHAKES = 6, 40
 """Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
@@ -138,12 +138,12 @@ class GroupExchanges:
         self._home: IntArray = np.zeros(team.robots, dtype=np.int64)
         """(N,) group of each robot, 0 for those that are blinded, 1.. for the sizes in order."""
         self.value = np.inf
-        """Of the best group."""
+        """Value of the best group."""
 
     def weakest(self, budget: Budget) -> None:
         """Start from the individually weakest robots, the weakest in the largest group; as far as time allows."""
         rising = np.argsort(self._team.single, kind="stable")
-        # Those that cannot be blinded see in any case.
+        # Robots that cannot be blinded sense in any case.
         seeing = np.concatenate([rising[self._must[rising]], rising[~self._must[rising]]])[: sum(self.sizes)]
         home = np.zeros_like(self._home)
         home[rising[np.isin(rising, seeing)]] = np.repeat(np.arange(1, len(self.sizes) + 1), self.sizes)

@@ -1,4 +1,4 @@
-"""Which k links to protect, or to add, so that the worst case of a plan gains most."""
+"""Best k links to protect, or to add, for the worst case of a plan."""
 
 from __future__ import annotations
 
@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["BestLinks", "links_to_add", "links_to_protect"]
 
 ATTACK_SHARE = 0.2
-"""Of the time left, for each exact attack; one that does not close and is asked for again gets all of it. Not
-measured."""
+"""Share of the remaining time for each exact attack; one needed again while open gets all of it. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +55,7 @@ class BestLinks(Shown):
 
     @property
     def gain_lower(self) -> float:
-        """What these links are proved to gain in the worst case."""
+        """Proved gain of these links in the worst case."""
         return max(self.lower - self.before.upper, 0.0)
 
     @property

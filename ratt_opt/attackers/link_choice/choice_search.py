@@ -1,4 +1,4 @@
-"""Which few links spoil the worst of the known attacks: branch and bound over a covering problem.
+"""Branch and bound over a covering problem: few links that block the worst of the known attacks.
 
 A choice of links is worth the weakest of the known attacks that withstand it. At a node some candidates are chosen and
 some excluded. Of the attacks that withstand the choice, going from the worst, one that can no longer be spoilt bounds

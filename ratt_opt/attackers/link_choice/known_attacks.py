@@ -43,7 +43,7 @@ class KnownAttack:
     blinded: frozenset[int]
 
     def withstands(self, chosen: int) -> bool:
-        """Whether it is still possible where these candidates (a bit mask) are chosen."""
+        """Tell whether the attack is still possible after these candidates (a bit mask) are chosen."""
         return (self.links & chosen).bit_count() < self.need
 
 
@@ -125,7 +125,7 @@ class KnownAttacks:
     def _most_linked(
         self, groups: Groups, counts: IntArray, blinded: frozenset[int], goal: float
     ) -> tuple[int, int] | None:
-        """Of the pairs of groups that are worth no more than ``goal`` together, the first with most links between."""
+        """Find the pair of groups with most links between among those worth at most ``goal`` together."""
         first, second = np.nonzero(np.triu(counts))
         order = np.argsort(-counts[first, second], kind="stable")
         for start in range(0, len(order), AT_ONCE):
@@ -176,7 +176,7 @@ def _as_array(links: Iterable[Link]) -> IntArray:
 
 
 def _between(groups: Groups, links: Iterable[Link]) -> list[tuple[int, int]]:
-    """For each link between two groups, the numbers of these, the lower first."""
+    """Return the pairs of groups (numbers, the lower first) that the links join, one for each link."""
     home = {i: k for k, group in enumerate(groups) for i in group}
     pairs = ((home[i], home[j]) for i, j in links)
     return [(min(pair), max(pair)) for pair in pairs if pair[0] != pair[1]]

@@ -1,4 +1,4 @@
-"""What choosing links to protect, or links to add, changes for the adversary."""
+"""Effect on the adversary of links that are protected, or added."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Upgrade(Protocol):
         """The groups of the team that has all candidates, before any attack."""
 
     def needed(self, groups: Sequence[frozenset[int]]) -> int:
-        """So many chosen links between the groups spoil the attack that separates them; fewer do not."""
+        """Count the chosen links needed to block the attack that separates these groups."""
 
 
 class Protection:
@@ -54,7 +54,7 @@ class Protection:
         return replace(self.problem, protected_links=self.problem.protected_links | set(links))
 
     def together(self) -> Sequence[frozenset[int]]:
-        """Those of the team as it is."""
+        """Return the connected groups of the team as it is."""
         return self.problem.communication.groups()
 
     def needed(self, groups: Sequence[frozenset[int]]) -> int:  # noqa: ARG002  (the same for every attack)
@@ -85,12 +85,12 @@ class Addition:
         return replace(self.problem, graph=graph)
 
     def together(self) -> Sequence[frozenset[int]]:
-        """Those that the candidates join."""
+        """Return the connected groups of the team with all candidates added."""
         links = self.problem.communication.links.union(self.candidates)
         return CommunicationGraph(self.problem.n_robots, links).groups()
 
     def needed(self, groups: Sequence[frozenset[int]]) -> int:
-        """One more than the adversary could cut beside those links of the graph that it has to cut anyway."""
+        """Return one more than the links left to the adversary after those of the graph that it has to cut."""
         return self.problem.alpha_c - len(self.problem.communication.links_between(groups)) + 1
 
 
