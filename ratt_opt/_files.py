@@ -27,7 +27,7 @@ earlier one. Run the same command again.
 """
 
 WRITING = ".writing-"
-"""How the names of files begin that are not yet whole."""
+"""Prefix of the names of files that are not yet whole."""
 
 _KINDS = (
     (stat.S_ISLNK, "a symbolic link"),
@@ -145,7 +145,7 @@ def write_together(
 
 
 def _aside() -> str:
-    """How the names of half-written files begin: they say which process of which machine writes them."""
+    """Return the prefix of the names of half-written files, with the machine and the process that writes them."""
     return f"{WRITING}{_machine()}-{os.getpid()}-"
 
 
@@ -166,7 +166,7 @@ def _sweep(folder: Path) -> None:
 
 
 def _runs(pid: int) -> bool:
-    """Whether there is such a process; yes where it cannot be asked without harm."""
+    """Tell whether the process exists; also true if that cannot be tested without harm."""
     if sys.platform == "win32":
         return True
     try:

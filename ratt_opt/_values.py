@@ -51,7 +51,7 @@ class ByValue:
 
 
 def _key(value: Any) -> Any:
-    """What a value is compared by: nested tuples that are hashable and free of NaN."""
+    """Return the key by which a value is compared: nested tuples, hashable and free of NaN."""
     if isinstance(value, ByValue):
         assert is_dataclass(value)
         return type(value), tuple(_key(getattr(value, f.name)) for f in fields(value) if f.compare)

@@ -3,4 +3,4 @@
 __version__ = "0.1.0"
 
 CITATION = f"ratt-opt {__version__} (CITATION.cff); method: L. Zhou and V. Kumar, arXiv:2109.09838"
-"""How reports ask to be cited."""
+"""Citation that reports print."""

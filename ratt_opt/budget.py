@@ -147,12 +147,12 @@ class Budget:
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether the user interrupted: nothing is begun any more, however short it is."""
+        """True if the user interrupted: nothing is begun any more, however short it is."""
         return self._interrupt.happened
 
     @property
     def is_over(self) -> bool:
-        """Whether the time is up, no evaluation is left or the user interrupted; nodes are not asked."""
+        """True if the time is up, no evaluation is left or the user interrupted; nodes do not count."""
         return self.stop() not in {None, Stop.NODES}
 
     def check(self) -> None:
@@ -266,7 +266,7 @@ def _as_interrupted(found: Any) -> Any:
 
 
 def undisturbed(budget: Budget, finish: Callable[[], T]) -> T:
-    """What a short last step returns; an interrupt in it is noted and the step done again."""
+    """Run a short last step to its end; an interrupt in it is noted and the step repeated."""
     try:
         return finish()
     except KeyboardInterrupt:
@@ -275,7 +275,7 @@ def undisturbed(budget: Budget, finish: Callable[[], T]) -> T:
 
 
 def uninterrupted(found: T) -> T:
-    """What a search found; ``KeyboardInterrupt`` if the user interrupted it.
+    """Return the result of a search, or raise ``KeyboardInterrupt`` if the user interrupted it.
 
     For callers that keep no bracket of their own: to them it would pass for what a whole search finds.
     """

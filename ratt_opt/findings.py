@@ -1,4 +1,4 @@
-"""What the main job finds: every plan with its worst case, the bracket, the guarantees, the proof.
+"""Result of the main job: every plan with its worst case, the bracket, the guarantees, the proof.
 
 ``main_job/result.py`` adds how that is saved and shown.
 """
@@ -43,7 +43,7 @@ class AssessedPlan:
     posterior: FloatArray | None
 
     def role(self, robot: int) -> str:
-        """What becomes of a robot under the attack: ``blinded``, ``sees`` (in the best group) or ``cut off``."""
+        """Return the role of a robot under the attack: ``blinded``, ``sees`` (in the best group) or ``cut off``."""
         if robot in self.worst_case.attack.sensing:
             return "blinded"
         return "sees" if robot in self.best_group else "cut off"

@@ -56,7 +56,7 @@ def rows_of(entries: Sequence[tuple[Sequence[int], Sequence[float]]], lower: Arr
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClaimedSolution:
-    """What HiGHS says; nothing here is proved.
+    """Answer of HiGHS; nothing here is proved.
 
     ``is_optimal`` : it claims an optimum. ``x`` (columns,) and ``duals`` (rows,) : what it has; empty if nothing.
     ``bound`` : claimed bound of an integer program (minus infinity if there is none); ``nodes`` it explored.

@@ -217,7 +217,7 @@ class Problem:
         return len(telling) <= self.alpha_s and not telling & self.protected_robots
 
     def tells_anything(self, plan: IntArray, attack: Attack) -> bool:
-        """Whether a robot that is not blinded has any information under this plan."""
+        """Tell whether a robot that is not blinded has any information under this plan."""
         seeing = [i for i in range(self.n_robots) if i not in attack.sensing]
         f = self.objective
         return bool(f.information[plan[seeing]].any() if isinstance(f, InformationObjective) else seeing)

@@ -1,4 +1,4 @@
-"""Whether a certificate is about the problem in a file, on whatever machine its matrices were computed.
+"""Agreement of a certificate with the problem in a file, whichever machine computed its matrices.
 
 Two machines compute the matrices of one scenario with differences in the last digits (vector instructions). So they
 are enclosed anew from the scenario's own numbers, in ball arithmetic that shares nothing with the code that
@@ -64,7 +64,7 @@ def differences(given: Scenario | InformationInput, objective: str) -> Callable[
 
 
 def _enclosable(given: Scenario) -> bool:
-    """Whether all sensors, motions and noises are those whose formulas stand here."""
+    """Tell whether the formulas of all sensors, motions and noises stand here."""
     noises = all(target.process_noise is None for target in given.targets)
     motions = all(robot.motion == "unicycle" for robot in given.robots)
     return noises and motions and all(type(robot.sensor or given.sensor) is Sensor for robot in given.robots)
@@ -86,7 +86,10 @@ def _outside(record: dict[str, Any], name: str, enclosed: Iterator[Any]) -> str:
 
 
 def _linked(given: Scenario, stored: Any, expected: list[list[int]]) -> bool:
-    """Whether links are those of the scenario, where they follow from a range but for those that rounding decides."""
+    """Test whether links are those of the scenario.
+
+    If links follow from a range, those that rounding decides may differ.
+    """
     if stored == expected or given.communication_range is None:
         return bool(stored == expected)
     try:
@@ -105,7 +108,7 @@ def _at_range(given: Scenario, *link: Any) -> bool:
 
 
 def _inside(stored: Any, enclosed: Iterator[Any]) -> bool:
-    """Whether nested lists of floats lie in nested lists of balls (or sets of balls) of the same shape."""
+    """Test whether nested lists of floats lie in nested lists of balls (or sets of balls) of the same shape."""
     balls = list(enclosed)
     if not isinstance(stored, list) or len(stored) != len(balls):
         return False
@@ -180,7 +183,7 @@ def _entries(sensor: Sensor, here: Point, heading: arb, aim: Point) -> list[arb]
 
 
 def _reaches(sensor: Sensor, distance: arb, angle: arb) -> bool | None:
-    """Whether the target is in reach; ``None`` where rounding decides that."""
+    """Decide whether the target is in reach; ``None`` if rounding decides that."""
     limits = []
     if sensor.max_range is not None:
         limits.append((_rounded(distance, distance, share=OF_POSITIONS), arb(sensor.max_range)))

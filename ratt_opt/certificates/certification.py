@@ -1,4 +1,4 @@
-"""What became of a result's proof: a certificate as written and verified, or why there is none."""
+"""Certificate of a result, as written and verified, or the reason why there is none."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Certificate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Certification:
-    """Whether a result has a certificate: it, or (``None``) ``why_not`` in words.
+    """Certificate of a result, or (``None``) ``why_not`` in words.
 
     ``final`` : whether that is how it stays; not so while a proof is under way, or where one was cut short.
     """
@@ -52,11 +52,11 @@ class Certification:
 
 
 NOT_ASKED_FOR = Certification(why_not="not asked for")
-"""What a report says that was made without one."""
+"""Certification in a report that was made without a certificate."""
 PENDING = Certification(
     why_not="not finished when this report was written; a certificate beside it is of an earlier one", final=False
 )
-"""What a report says while its proof is written and verified, and for good where that is killed."""
+"""Certification in a report while its proof is written and verified; it stays if that is killed."""
 INTERRUPTED = Certification(
     why_not="interrupted before it was complete; a certificate beside this report is of an earlier one", final=False
 )

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 __all__ = ["cover_proof"]
 
 UNIT = 1 << 14
-"""Of duals, one link that leaves a group: by rounding, duals of 100 robots claim less by under a hundredth of a link,
-and flows are short to write."""
+"""Unit of integer duals: one link that leaves a group.
+By rounding, duals of 100 robots claim less by under a hundredth of a link, and flows are short to write."""
 SEARCHED = 2_000_000
 """Nodes of the search for duals: seconds, up to half a minute at 30 robots."""
 MOST_PARTITIONS = 200_000
@@ -71,7 +71,7 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 
 
 def _searched_duals(plan: Plan, sets: PlanSets) -> LinkDuals:
-    """Those with which the attacker's search refutes the threshold."""
+    """Find the duals with which the attacker's search refutes the threshold."""
     from ratt_opt.attack.dual_prices import ThresholdDecision
 
     seconds = seconds_left()
@@ -108,7 +108,7 @@ def _shorter(sets: PlanSets, question: Question, limits: list[Limit], max_nodes:
 
 
 def _without_limits(sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int) -> Lemmas:
-    """By one lemma, with the smallest size that is known of which all sets are worth the threshold."""
+    """Prove the threshold by one lemma: the smallest known size of which all sets reach it."""
     everyone = (1 << sets.plan.robots) - 1
     sizes = {sets.plan.most_below(sets.threshold), *(most for robots, most in limits if robots == everyone)}
     for most in sorted(sizes):
@@ -121,7 +121,7 @@ def _without_limits(sets: PlanSets, question: Question, limits: list[Limit], max
 
 
 def _with_limits(sets: PlanSets, question: Question, limits: list[Limit], max_nodes: int) -> Lemmas:
-    """By the limits that the tree names, each proved with those before; it does without those of too large proofs."""
+    """Prove the threshold by the tree's limits, each proved with those before; drop limits of too large proofs."""
     nobody = {"size": sets.plan.robots + 1, "tree": ["budget"]}
     everyone = (1 << sets.plan.robots) - 1, sets.plan.most_below(sets.threshold)
     limits = sorted({*limits, everyone}, key=lambda limit: (limit[0].bit_count(), limit))

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["certify_cuts"]
 
 MOST_NUMBERS = 1_800_000
-"""Of a tree; the verifier refuses longer files."""
+"""Numbers of a tree at most; the verifier refuses longer files."""
 
 
 def certify_cuts(

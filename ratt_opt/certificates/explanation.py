@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 __all__ = ["explained"]
 
 MOST_LINES = 200
-"""Of one tree."""
+"""Lines printed of one tree at most."""
 QUESTIONS = {
     "sense": ("does robot {} sense in the group?", "yes", "no"),
     "inside": ("is robot {} in the group?", "yes", "no"),

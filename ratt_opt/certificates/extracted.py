@@ -19,7 +19,7 @@ PROVED, REFUSED, UNREADABLE, UPPER_ONLY = 0, 1, 2, 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExtractedVerdict:
-    """What the program accepted; ``text`` is its own line. ``lower_proved``: both ends, not the upper alone."""
+    """Verdict of the program; ``text`` is its own line. ``lower_proved``: both ends, not the upper alone."""
 
     program: str
     lower_proved: bool

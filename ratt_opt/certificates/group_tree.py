@@ -29,7 +29,7 @@ CASES = 100
 CRITERIA, MOST_CRITERIA = 4_000_000, 256_000_000
 """Criteria of single targets for a tree over sets: between two looks at the clock, a tenth of a second; and at most."""
 MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 12_000, 20_000, 1_000_000
-"""Of a tree; and numbers in all of its flows, as the verifier reads files of two million."""
+"""Flows and listed groups of a tree; numbers in all of its flows, as the verifier reads files of two million."""
 BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded", "limit"), ("worth", "copies", "budget", "flow", "listed")
 """Nodes by the numbers that the loops have for them."""
 NUMBERED = (*BRANCHES, "flow")

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["LinkDuals", "duals_of_all_groups"]
 
 SECONDS, SHARE = 20.0, 0.3
-"""For the list, at most; and of the seconds left."""
+"""Seconds for the list at most, and share of the remaining seconds."""
 MOST_LISTED = 1_000_000
 """Groups in the list."""
 MARGIN = 0.02

@@ -29,7 +29,7 @@ __all__ = ["ENUMERATED", "lower_proof", "weaker_lower_proof"]
 LARGEST_TREE = 300_000
 """Most nodes of a tree."""
 SHARE_OF_OTHERS = 0.4
-"""Of the seconds left that each way but the last may take."""
+"""Share of the remaining seconds for each way but the last."""
 COVERS_FIRST = 16
 """Robots up to which duals and covers come first on dense graphs, too. Of 48 teams of 8 to 16 robots they prove all, in
 a tenth of the time; sizes leave eight open, and the others have shorter proofs (a third of the bytes at 16 robots)."""
@@ -91,5 +91,5 @@ def weaker_lower_proof(
 
 
 def _is_dense(problem: Problem) -> bool:
-    """Whether three fifths of all links are there."""
+    """Tell whether the graph has at least three fifths of all links."""
     return 10 * len(problem.communication.links) >= 3 * problem.n_robots * (problem.n_robots - 1)

@@ -1,4 +1,4 @@
-"""What lower proofs are about: a plan and a threshold, with the plan's robots as compiled loops read them."""
+"""Subject of lower proofs: a plan and a threshold, with the plan's robots as the compiled code reads them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ __all__ = ["COVERING", "NotClosedError", "PlanSets"]
 NEGLIGIBLE = 2.0**-27
 """Deviation of a coordinate that does not count, beside those that do: less than rounding, as it is squared."""
 COVERING = "covering all attacks"
-"""What is told while a cover is built."""
+"""Progress message while a cover is built."""
 
 
 class NotClosedError(Exception):

@@ -18,7 +18,8 @@ __all__ = ["upper_record"]
 DIGITS = 9
 """Digits kept of a Fenchel point: any point is valid, and the bound changes by the square of its error."""
 LARGEST_CONDITION = 1e6
-"""Of the matrices whose points are shortened: beyond it so few digits could leave one that is not positive definite."""
+"""Largest condition of the matrices whose points are shortened: with more, so few digits could leave one that is not
+positive definite."""
 
 
 def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
@@ -124,7 +125,7 @@ class _Nodes:
 
 
 def _short(value: Any) -> Any:
-    """The same nested lists with fewer digits."""
+    """Shorten the digits of nested lists."""
     if isinstance(value, list):
         return [_short(item) for item in value]
     return value if isinstance(value, int) else float(f"{value:.{DIGITS}g}")

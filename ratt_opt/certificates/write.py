@@ -43,7 +43,7 @@ __all__ = [
 ]
 
 SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
-"""How far a float lower bound is lowered, in turn, until exact arithmetic proves it; relative to the plan's value."""
+"""Relative amounts by which a float lower bound is lowered, in turn, until exact arithmetic proves it."""
 
 LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
 """The largest shave is at least so many times what the objective's values are off by."""
@@ -84,7 +84,7 @@ def problem_document(problem: Problem) -> dict[str, Any]:
 
 
 def _is_known(problem: Problem) -> bool:
-    """Whether the objective is a registered criterion itself: a subclass may have another formula."""
+    """Tell whether the objective is a registered criterion itself: a subclass may have another formula."""
     return type(problem.objective) in CERTIFIED
 
 

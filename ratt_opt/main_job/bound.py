@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 from time import monotonic
-from typing import TYPE_CHECKING, Protocol, TypeVar, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from ratt_opt._values import counted
 from ratt_opt.attack.edge_cuts.smallest import largest_group_soon
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget, Stop, undisturbed
 from ratt_opt.certificates.certification import INTERRUPTED, NOT_ASKED_FOR, Certification
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
@@ -83,21 +83,20 @@ class Steps:
             self.tell(line)
 
 
-T = TypeVar("T")
-
 ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
 """Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
 on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
 of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
 bracket, so shares trade strength only; the non-robust optimum is a baseline if it is proved in its share."""
 CERTIFICATE_SHARE = 0.25
-"""Of the whole time, kept for writing and verifying a certificate if one is wanted; what the searches leave of
-theirs comes on top."""
+"""Share of the whole time kept for writing and verifying a certificate, if one is wanted.
+Time that the searches leave comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
 GUARANTEES, QUICK_SECONDS = ("none", "quick", "full"), 2.0
-"""How much time the guarantees have; of six bearing-only drones the curvature took half a minute, the plan a second."""
+"""Modes of the guarantees, and seconds of the quick one.
+Of six bearing-only drones the curvature took half a minute, the plan a second."""
 TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust")
 """Names of a report's own planners."""
 RANDOM_SEED = 0
@@ -164,7 +163,7 @@ def bound(
         # Asked for once: of a slow function of the user's own these are most of what a short limit has time for.
         single = problem.objective.singletons()
         alpha_cs, robust = _planned(problem, single, budget)
-        baselines = _kept(budget, lambda: tuple(_baselines(problem, single, budget)))
+        baselines = undisturbed(budget, lambda: tuple(_baselines(problem, single, budget)))
         seen = _world_of(given, model, problem) if planners else None
         baselines += tuple(_own_plans(problem, planners or {}, seen, budget))
     with steps("the best possible plan"):
@@ -172,14 +171,14 @@ def bound(
         optimum, best = _best(problem, search, budget)
     with steps("other attacks on the recommended plan"):
         shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)
-        views = _kept(budget, lambda: views_of(problem, shown, part))
+        views = undisturbed(budget, lambda: views_of(problem, shown, part))
     with steps("curvature and guarantees"):
         k = c = None
         sure: dict[str, Guarantee] = {}
         if guarantees != "none":
             rest = Budget.inside(budget, QUICK_SECONDS) if guarantees == "quick" else budget
-            k, c = _kept(budget, lambda: _curvatures(problem, rest.part(CURVATURE_SHARE)))
-            sure = _kept(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
+            k, c = undisturbed(budget, lambda: _curvatures(problem, rest.part(CURVATURE_SHARE)))
+            sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
     with steps("certificate"):
         proof, failure = _certified(problem, optimum, certificate, whole, source)
     report = BoundReport(
@@ -219,15 +218,15 @@ def _planned(problem: Problem, single: FloatArray, budget: Budget) -> tuple[int,
     """RATT's plan under attack, and what it took the link attacks to be worth; ``single`` (E,) individual values."""
     alpha_cs = equivalent_sensing_attacks(problem, budget)
     plan = replace(bait_and_greedy(problem, problem.alpha_s + alpha_cs, budget, single), alpha_cs=alpha_cs)
-    return alpha_cs, _kept(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+    return alpha_cs, undisturbed(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
 
 
 def _best(problem: Problem, search: Callable[..., MaxMinResult], budget: Budget) -> tuple[MaxMinResult, PlanAssessment]:
     """The search for the best plan, and that plan under attack."""
-    optimum = _kept(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
+    optimum = undisturbed(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
     found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
     known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
-    return optimum, _kept(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
+    return optimum, undisturbed(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
 
 
 def _certified(
@@ -243,15 +242,6 @@ def _certified(
     except KeyboardInterrupt:
         budget.interrupt()
         return INTERRUPTED, None
-
-
-def _kept(budget: Budget, step: Callable[[], T]) -> T:
-    """What a step returns; interrupted outside its own searches, what it can say at once."""
-    try:
-        return step()
-    except KeyboardInterrupt:
-        budget.interrupt()
-        return step()
 
 
 def _problem_of(
@@ -273,7 +263,7 @@ def _problem_of(
 
 
 def _world_of(given: HasProblem | Problem, model: MissionModel | None, problem: Problem) -> PlannerWorld | None:
-    """What planners may look at beside the problem, if it comes from a scenario."""
+    """Return the world that planners may look at beside the problem, if it comes from a scenario."""
     if not isinstance(given, Scenario):
         return None
     return scenario_world(given, problem) if model is None else first_world(given, model)
@@ -308,7 +298,7 @@ def _own_plans(
         except InputError as error:
             raise InputError(f"planners[{name!r}]: {error.argument}", error.rule, error.value) from None
         plan = Plan(elements=elements, evaluations=cost)
-        yield _kept(budget, partial(assess, problem, name, plan, budget.part(ATTACK_SHARE)))
+        yield undisturbed(budget, partial(assess, problem, name, plan, budget.part(ATTACK_SHARE)))
 
 
 def _check_planners(planners: Mapping[str, Planner]) -> None:
@@ -320,7 +310,7 @@ def _check_planners(planners: Mapping[str, Planner]) -> None:
 
 
 def _omitted(baselines: tuple[PlanAssessment, ...], guarantees: str, planners: Collection[str]) -> dict[str, str]:
-    """What the report leaves out, and why."""
+    """Collect the parts that the report leaves out, with reasons."""
     planned = {plan.name for plan in baselines}
     omitted = {name: "interrupted" for name in planners if name not in planned}
     if all(plan.name != "nonrobust" for plan in baselines):
@@ -355,7 +345,7 @@ def _n_max_upper(problem: Problem, lower: int, budget: Budget) -> int | None:
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:
-    """What a user should know of the input: elements, and robots, that tell nothing, and matrices that were mended."""
+    """Collect remarks on the input: elements and robots without information, and matrices that were mended."""
     f = problem.objective
     if not isinstance(f, InformationObjective):
         return ()

@@ -1,4 +1,4 @@
-"""What the main job found: every plan with its worst case, the bracket, the guarantees, the proof."""
+"""Result of the main job: every plan with its worst case, the bracket, the guarantees, the proof."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ SECONDS = 60.0
 
 
 class BoundReport(Findings):
-    """What to do now, the worst that can follow, and how far that is from the best possible.
+    """Recommended plan, its worst case, and its distance from the best possible.
 
     Claims, all in floating point unless a certificate says more: each plan's worst case lies in
     its bracket; ``optimum.lower <= Phi* <= optimum.upper``; RATT's plan has a worst-case value of at least

@@ -77,7 +77,7 @@ def check_numbers(argument: str, numbers: NDArray[Any], least: int, count: int) 
 
 
 def address(array: Any) -> int:
-    """Where a checked array is in memory; it must be kept alive while C uses it."""
+    """Return the memory address of a checked array; it must be kept alive while C uses it."""
     if array.flags.writeable:  # in a quarter of the time
         return ctypes.addressof(ANYTHING.from_buffer(array))
     return int(array.ctypes.data)

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 __all__ = ["bar_ends", "draw_bars"]
 
 CLOSE = 0.5
-"""From this share of the bound on, what is missing is drawn, not what is kept: one per cent stays visible."""
+"""Share of the bound from which the gap to it is drawn instead of the value: one per cent stays visible."""
 NOTHING = 1e-9
 """Less than this share of the bound is rounding: no whisker shows it, and it must not fill the axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BarRows:
-    """How a row of the panel is divided, in rows: a bar with its number above it.
+    """Layout of a row of the panel, in rows: a bar with its number above it.
 
     ``thick`` : height of a bar; more of it leaves less room for the number.
     ``beyond`` : length of the axis in longest bars, so that the dashed line is inside; more of it shortens the bars.

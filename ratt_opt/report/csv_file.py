@@ -15,7 +15,7 @@ __all__ = ["write_csv"]
 QUANTITY = re.compile(r"[-+]\d[\w ./,-]*")
 """A signed number, as a control's label begins with ("-3 m/s, 2 rad/s"): it calls nothing."""
 FORMULA = tuple("=+-@＝＋－＠\t\r\n")
-"""What a formula begins with (OWASP, "CSV injection"), full-width signs too: names come from files of strangers."""
+"""First characters of formulas (OWASP, "CSV injection"), full-width signs too: names come from files of strangers."""
 
 
 def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:

@@ -52,11 +52,11 @@ class Description:
         return named(i, self.robot_names[i], "robot")
 
     def label(self, element: int) -> str:
-        """What an element is; its index if nothing is known."""
+        """Return the label of an element; its index if none is known."""
         return self.labels[element] if self.labels else f"element {element}"
 
     def pose_after(self, element: int) -> list[float] | None:
-        """Where its robot is after an element's control: x, y [m], heading [rad] as far as known."""
+        """Return its robot's pose after an element's control: x, y [m], heading [rad] as far as known."""
         return None if self.poses_after is None else [float(x) for x in self.poses_after[element]]
 
 

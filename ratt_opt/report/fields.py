@@ -1,4 +1,4 @@
-"""What sensors of limited view look at: sectors of a map, and lines from robots to the targets that they measure."""
+"""Fields of view: sectors on a map, and lines from robots to the targets that they measure."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NEAREST_EDGE = 0.12
 
 
 def field_of(picture: Picture, i: int) -> tuple[float, float, float]:
-    """Where robot ``i`` looks: heading [rad], full angle [rad], and the distance up to which that is drawn [m]."""
+    """Return the sector of robot ``i``: heading [rad], full angle [rad], and the radius of the drawing [m]."""
     assert picture.views is not None
     assert picture.headings is not None
     view = picture.views[i]

@@ -34,7 +34,7 @@ SYMBOLS = {"alpha_s": r"$\alpha_s$", "alpha_c": r"$\alpha_c$", "alpha_cs": r"$\a
 """The paper's symbols of what the library writes in letters."""
 SYMBOL = re.compile(rf"(?<!\w)({'|'.join(SYMBOLS)})(?!\w)")
 NUMBER = re.compile(r"[\[+-]?\d.*")
-"""What a cell begins with in a column that is set flush right."""
+"""Pattern of the beginning of cells in a column that is set flush right."""
 
 
 def latex_table(columns: Sequence[str], rows: Iterable[Sequence[str]], *, caption: str = "", note: str = "") -> str:

@@ -22,7 +22,7 @@ SIGMAS = 2.4477
 MANY_LINKS = 60
 """Above this many links of a kind they are drawn fainter."""
 MANY_ROBOTS = 20
-"""From this many robots on, only the best group and what is attacked are drawn one by one, the rest as a density,"""
+"""Number of robots from which only the best group and attacked robots are drawn one by one, the rest as a density."""
 SPARSE, MOST_DRAWN = 4, 60
 """unless there are at most this many links a robot and this many robots: a network is read by all of its links."""
 
@@ -165,7 +165,7 @@ def _number(axes: Axes, picture: Picture, i: int) -> None:
 
 
 def _draw_density(axes: Axes, picture: Picture, rest: list[int]) -> None:
-    """How many of the robots that are not drawn one by one stand where."""
+    """Draw the density of the robots that are not drawn one by one."""
     if rest:
         low, high = picture.places.min(axis=0), picture.places.max(axis=0)
         extent = (low[0], high[0] + 1e-9, low[1], high[1] + 1e-9)

@@ -1,4 +1,4 @@
-"""How results show themselves in a notebook: a table of the planners, the plan, and the figure."""
+"""Views of results in a notebook: a table of the planners, the plan, and the figure."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ LEAST_GREY_DISTANCE = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """How a planner is drawn: colour, marker of points and curves, hatch of bars."""
+    """Look of a planner: colour, marker of points and curves, hatch of bars."""
 
     colour: str
     marker: str
@@ -56,7 +56,7 @@ VERDICTS = {
     "no violation found": Look("#f3c6dd", "s", "..."),
     "not decidable here": Look("#1c1c1c", "P", "oo"),
 }
-"""What the audit's entries end with."""
+"""Looks of the audit's verdicts."""
 SURVIVING, LOST, BLINDED, TARGET = "#0b5394", "#b4b9be", "#e0451b", "#33200a"
 CUT = BLINDED
 INK = "#222222"

@@ -1,4 +1,4 @@
-"""What the map of a team shows under one plan and one attack."""
+"""Contents of a team's map under one plan and one attack."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
 
 
 def _plane(source: object, dimension: int) -> tuple[Any, ...] | None:
-    """What picks the covariances (M, 2, 2) of x and y out of those of whole states; ``None`` if they are not told.
+    """Return the index of the covariances (M, 2, 2) of x and y within those of whole states; ``None`` if unknown.
 
     They are the first two coordinates in metres; a state of two numbers is a position unless its units say otherwise.
     """

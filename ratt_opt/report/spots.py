@@ -1,4 +1,4 @@
-"""Where words go on a map: each beside its place, in the spot where it covers least of what is there already."""
+"""Placement of words on a map: each beside its place, in the spot where it covers least of what is there already."""
 
 from __future__ import annotations
 

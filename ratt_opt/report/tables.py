@@ -169,7 +169,7 @@ def _planners(report: Findings) -> Table:
 
 
 def omitted_texts(report: Findings) -> list[str]:
-    """What was left out, and why, one by one."""
+    """List the parts that were left out, each with its reason."""
     return [f"left out: {name} ({why})" for name, why in report.omitted.items()]
 
 
@@ -206,7 +206,7 @@ def _bracket(report: Findings) -> Table:
 
 
 def verdict_text(given: Certification) -> str:
-    """What the verifier proved, or why there is no certificate."""
+    """Say what the verifier proved, or why there is no certificate."""
     if given.certificate is None:
         return f"none: {given.why_not}"
     found = given.certificate.verified
@@ -232,7 +232,7 @@ def _guarantees(report: Findings) -> Table:
 
 
 def guarantee_text(report: Findings) -> str:
-    """What the strongest guarantee says if that is all or nothing, else nothing."""
+    """Say what the strongest guarantee means if it guarantees all or nothing, else return an empty text."""
     best = report.guaranteed_share
     if best == 1:
         return "RATT's plan is optimal, and was sure to be before planning"

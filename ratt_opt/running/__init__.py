@@ -1,1 +1,1 @@
-"""How code runs here: interrupts answered, worker processes, progress told."""
+"""Running code here: interrupts, worker processes, progress."""

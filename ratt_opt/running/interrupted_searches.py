@@ -39,7 +39,7 @@ _THREAD = threading.local()
 
 @dataclass(slots=True)
 class InterruptNote:
-    """Whether the user interrupted; one for a search and all its parts.
+    """Note that the user interrupted; one for a search and all its parts.
 
     ``begun_anew`` : whether the search was begun anew with the note, as it had no bracket when the interrupt was raised
     """
@@ -54,7 +54,7 @@ def current_note() -> InterruptNote:
 
 
 def is_noting() -> bool:
-    """Whether a search is under way in this thread."""
+    """Tell whether a search is under way in this thread."""
     return getattr(_THREAD, "note", None) is not None
 
 
@@ -84,7 +84,7 @@ def noting_interrupts(note: InterruptNote, outermost: CodeType) -> Iterator[None
 
 
 def _raises(handler: Any) -> bool:
-    """Whether a handler raises ``KeyboardInterrupt`` and does nothing else: others belong to programs around."""
+    """Tell whether a handler only raises ``KeyboardInterrupt``: others belong to programs around."""
     is_ours = type(getattr(handler, "__self__", None)).__module__ == "ratt_opt.cli.interrupts"
     return handler is signal.default_int_handler or is_ours
 

@@ -1,4 +1,4 @@
-"""What must not be left half done when the user interrupts."""
+"""Protection of short work that an interrupt must not leave half done."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _again_later(number: int) -> None:
 
 
 def interrupt_main_thread(number: int = signal.SIGINT) -> None:
-    """From any thread; also if the main one sleeps or waits, if the system can tell a single thread.
+    """Interrupt the main thread from any thread, even if it sleeps or waits (if the system can tell single threads).
 
     A main thread that waits goes on for as long as it was to if the signal is sent to another one.
     """
@@ -97,9 +97,9 @@ def imported_whole(module: str) -> Any:
 
 
 def must_wait(frame: FrameType | None, outermost: CodeType) -> bool:
-    """Whether a package of others is being imported there, something is collected, or handlers are being changed.
+    """Tell whether an interrupt must wait: a package of others is imported, something is collected, or handlers change.
 
-    ``outermost`` : of the function in which that counts
+    ``outermost`` : code of the function in which that counts
     """
     if frame is not None and frame.f_code is outermost:
         return True

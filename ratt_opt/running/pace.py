@@ -1,4 +1,4 @@
-"""How much work is done between two looks at the clock: learned, as its speed depends on the data and the machine."""
+"""Work between two looks at the clock: learned, as its speed depends on the data and the machine."""
 
 from __future__ import annotations
 

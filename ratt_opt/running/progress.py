@@ -1,4 +1,4 @@
-"""What is going on and since when, for people at a terminal, about every step that has taken two seconds.
+"""Progress for people at a terminal: the current step and its time, once it has taken two seconds.
 
 A step says what it is with ``Step``, as a block or as a decorator. Nothing is shown if standard error is no
 terminal, in worker processes and in threads other than the main one; nothing stays on the screen.
@@ -52,7 +52,7 @@ class Step(ContextDecorator):
         self._detail = detail
 
     def line(self, now: float) -> str | None:
-        """What to show of it, if it has taken long enough."""
+        """Return the line to show, if the step has taken long enough."""
         seconds = now - self._began
         if seconds < (PATIENCE if self._patience is None else self._patience):
             return None
@@ -105,7 +105,7 @@ _SCREEN = _Screen()
 
 
 def _columns() -> int:
-    """Of the terminal that standard error is, whatever standard output is: a longer line could not be erased."""
+    """Return the width of the terminal that standard error is: a longer line could not be erased."""
     try:
         return os.get_terminal_size(sys.stderr.fileno()).columns or 80
     except (OSError, ValueError):
@@ -113,7 +113,7 @@ def _columns() -> int:
 
 
 def _somebody_looks() -> bool:
-    """Whether standard error is a terminal, and this the process and thread that people started."""
+    """Tell whether standard error is a terminal, and this is the process and thread that people started."""
     try:
         if sys.stderr is None or not sys.stderr.isatty():
             return False

@@ -1,4 +1,4 @@
-"""What a set function is worth at any set, and which properties it has, each violation with its witness.
+"""Set functions: values, and properties with a witness for each violation.
 
 Open ``base.py`` first (the interface of every set function), then ``information.py`` and ``criteria/`` (the criteria
 of posterior information; ``criterion_parts.py`` is what one may state of itself). ``reference.py`` has textbook

@@ -55,7 +55,7 @@ VALUES = ValueParams()
 
 
 def are_exact(numbers: FloatArray, terms: int) -> bool:
-    """Whether all are whole, and sums of that many ``terms`` are exact."""
+    """Tell whether all numbers are whole, and sums of that many ``terms`` are exact."""
     flat = numbers.ravel()
     for start in range(0, len(flat), VALUES.block):
         some = flat[start : start + VALUES.block]
@@ -136,9 +136,9 @@ class SetFunction(ABC):
     __slots__ = ()
 
     is_non_decreasing: ClassVar[bool] = False
-    """Whether theory proves it non-decreasing for all data."""
+    """Non-decreasing for all data, by theory."""
     is_submodular: ClassVar[bool] = False
-    """Whether theory proves it submodular for all data."""
+    """Submodular for all data, by theory."""
 
     @property
     @abstractmethod
@@ -163,14 +163,14 @@ class SetFunction(ABC):
 
     @property
     def has_exact_values(self) -> bool:
-        """Whether values are whole numbers that floats hold, so that their differences are exact."""
+        """True if values are whole numbers that floats hold, so that their differences are exact."""
         return False
 
     @property
     def most_total_curvature(self) -> float:
-        """What theory says that the total curvature over all elements is at most; 1 if it says nothing.
+        """Upper bound on the total curvature over all elements, from theory; 1 if there is none.
 
-        A function of your own that knows better says so: what keeps a share of its value then has a bound.
+        A function of your own may override it: guarantees for plans under attack then have a bound to start from.
         """
         return 1.0
 
@@ -276,7 +276,7 @@ class TableFunction(SizedFunction):
 
     @property
     def has_exact_values(self) -> bool:
-        """Whether all values are whole numbers below 2**53."""
+        """True if all values are whole numbers below 2**53."""
         return are_exact(self.values, self.n)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

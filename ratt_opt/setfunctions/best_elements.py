@@ -57,7 +57,7 @@ class BestElements(SumFunction):
 
     @property
     def has_exact_values(self) -> bool:
-        """Whether all that is added up is whole."""
+        """True if all summands are whole."""
         return are_exact(self.utility * self.weights, self.utility.shape[1]) and are_exact(self.utility, 1)
 
     def overestimator(self, part: int, share: FloatArray) -> Overestimator:

@@ -1,4 +1,4 @@
-"""What a criterion states about itself, and the generic stand-in for every part that it leaves out.
+"""Parts of a criterion, with a generic stand-in for each part that a criterion leaves out.
 
 :class:`~ratt_opt.setfunctions.information.InformationObjective` adds the data. A search asks for a part by its name
 and never which criterion it is.
@@ -106,12 +106,12 @@ class ProofParts(SetFunction):
         raise lacking(self, "conic_value(posterior)", "value as a concave cvxpy expression")
 
     def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002
-        """What a certificate states of the tangent at ``point`` (M, d, d): the verifier derives its bound from it."""
+        """Return the record of the tangent at ``point`` (M, d, d), from which the verifier derives its bound."""
         raise lacking(self, "fenchel_point(point, target)", "tangent as the verifier knows it")
 
     @property
     def stated(self) -> dict[str, Any]:
-        """What else a certificate's problem record states of the criterion, by field name, as plain data."""
+        """Further fields of the criterion in a certificate's problem record, by name, as plain data."""
         return {}
 
     @property
@@ -121,7 +121,7 @@ class ProofParts(SetFunction):
 
     @property
     def verifier_averages(self) -> bool:
-        """Whether the verifier bounds values, and so averages of them; else it compares each with a level."""
+        """True if the verifier bounds values, and so averages of them; else it compares each value with a level."""
         return True
 
 
@@ -139,13 +139,13 @@ class CriterionParts(ProofParts):
     condition: FloatArray
 
     name: ClassVar[str] = ""
-    """What files, tables and the command line call it; empty for a criterion that is not registered."""
+    """Name in files, tables and on the command line; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
     compiled_code: ClassVar[int | None] = None
     """Its number in the compiled loops (``native/src/team.h``), if it is there."""
 
     is_least_of_targets: ClassVar[bool] = False
-    """Whether the value is that of the target where it is least, as with the worst target's criterion."""
+    """True if the value is that of the target where it is least, as with the worst target's criterion."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -155,7 +155,7 @@ class CriterionParts(ProofParts):
 
     @classmethod
     def states(cls, part: str) -> bool:
-        """Whether the criterion defines this part itself instead of leaving it to the generic bounds."""
+        """Tell whether the criterion overrides a part instead of leaving it to the generic bounds."""
         return getattr(cls, part) is not getattr(CriterionParts, part)
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:  # noqa: ARG002
@@ -238,7 +238,7 @@ class CriterionParts(ProofParts):
         raise lacking(self, "marginals_beyond(base, information)", "largest marginals beyond a set")
 
     def cut_values(self, points: FloatArray, targets: Sequence[int | None]) -> FloatArray:  # noqa: ARG002
-        """What tangents for these ``targets`` bound, up to a constant: (K, ..., M, d, d) -> (K, ...)."""
+        """Return values that tangents for these ``targets`` bound, up to a constant: (K, ..., M, d, d) -> (K, ...)."""
         return self.value(points)
 
     @property
@@ -253,7 +253,7 @@ class CriterionParts(ProofParts):
         return VALUE_ROUNDING * self.prior_magnitude + self.inverse_rounding(np.abs(self._baseline))
 
     def error_scale(self, size: FloatArray) -> FloatArray | None:  # noqa: ARG002
-        """By how much each target's criterion changes at most, per relative change of its information: (..., M).
+        """Largest change of each target's criterion per relative change of its information: (..., M).
 
         ``size`` : (..., M) norm of the target's covariance. ``None``: nothing is known of that. See
         ``evaluation_error.py``.

@@ -44,7 +44,7 @@ class Decomposition(ABC):
 
     @property
     def is_sum(self) -> bool:
-        """Whether the function is the weighted sum of its parts; otherwise it is the least, and weights are ones."""
+        """True if the function is the weighted sum of its parts; otherwise it is the least, and weights are ones."""
         return True
 
     @property

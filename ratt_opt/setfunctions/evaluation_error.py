@@ -1,4 +1,4 @@
-"""How far computed values may be from the exact ones, of the matrices as they are given.
+"""Bounds on the difference between computed and exact values, for the matrices as they are given.
 
 Notation, for one target: ``P`` is the prior, ``X`` the information of a set of elements, at most one of each robot,
 ``L = P^{-1} + X``; norms are spectral, or Frobenius' if that is simpler and larger; ``u = 2^-53``.
@@ -86,7 +86,7 @@ def evaluation_error(objective: InformationObjective, choices: Sequence[IntArray
 
 
 def value_error(f: SetFunction, choices: Sequence[IntArray], largest: float) -> float:
-    """By how much values of sets of elements, at most one of each choice, may be off; ``largest`` : of their sizes.
+    """Bound the error of values of sets with at most one element of each choice; ``largest`` : of their sizes.
 
     Proved for the library's criteria. Whole numbers are exact, tables are rounded once, and of other functions it is
     their word (:attr:`SetFunction.rounding`), but at least ``COMPUTED.share``.

@@ -1,4 +1,4 @@
-"""What all criteria of the posterior information matrices have in common.
+"""Common part of all criteria of the posterior information matrices.
 
 For a set ``S`` of elements, target ``j``'s posterior information is
 ``Lambda_j(S) = prior[j]^{-1} + sum_{e in S} information[e, j]``. Every criterion
@@ -33,7 +33,7 @@ __all__ = ["InformationObjective", "from_triangles", "packed", "positive_parts",
 SYMMETRY_TOLERANCE = 1e-9
 """Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
 SINGLE_TOLERANCE = 1e-6
-"""The same for float32 matrices: eight of their roundings."""
+"""Largest accepted asymmetry of float32 matrices: eight of their roundings."""
 LARGEST = 1e100
 """Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
 WIDEST = 2e14
@@ -160,14 +160,14 @@ class InformationObjective(CriterionParts):
         return self._negative_parts
 
     def restricted_to(self, elements: IntArray) -> Self:
-        """The same criterion over some of the elements, in the given order."""
+        """Restrict the criterion to some of the elements, in the given order."""
         restricted = copy(self)
         restricted.information = readonly(self.information[elements])
         restricted._singletons = restricted._negative_parts = None
         return restricted
 
     def of_target(self, target: int) -> Self:
-        """The same criterion of one target alone."""
+        """Return the criterion of one target alone."""
         own, one = slice(target, target + 1), copy(self)
         one.prior, one.prior_information = readonly(self.prior[own]), readonly(self.prior_information[own])
         one.information, one.weights = readonly(self.information[:, own]), readonly(self.weights[own])
@@ -176,7 +176,7 @@ class InformationObjective(CriterionParts):
         return one
 
     def with_information(self, information: ArrayLike) -> Self:
-        """The same criterion of other elements: (E, M, d, d), checked."""
+        """Replace the elements: information (E, M, d, d), checked."""
         other = copy(self)
         checked, other.repaired = _check_information(information, self.prior)
         other.information = readonly(checked)
@@ -360,7 +360,7 @@ def _check_information(value: ArrayLike, prior: FloatArray) -> tuple[FloatArray,
 
 
 def is_negative(eigenvalues: FloatArray, share: float = SIGN.rounded) -> BoolArray:
-    """Whether the smallest of (..., d) ascending eigenvalues is below 0 by more than a share of the largest."""
+    """Tell whether the smallest of (..., d) ascending eigenvalues is below 0 by more than a share of the largest."""
     return np.asarray(eigenvalues[..., 0] < -share * np.abs(eigenvalues[..., -1]))
 
 

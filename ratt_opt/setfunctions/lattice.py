@@ -34,7 +34,7 @@ BLOCK_BITS = 13
 SETS = 1 << 20
 """Sets of one element that a call takes: about a millisecond."""
 NEAR_SETS = 1 << 17
-"""The same if each is looked at by up to 13 elements."""
+"""Sets that a call takes if each is compared for up to 13 elements."""
 PAIRS = 1 << 22
 """Pairs of sets that a call takes: some milliseconds."""
 

@@ -1,4 +1,4 @@
-"""Another function's values, checked one by one, counted, and asked for only while a budget lasts."""
+"""Budgeted function: values of another one, checked one by one, counted, and computed only while a budget lasts."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MOST_KEPT_AT_ONCE, MOST_KEPT = 2**12, 2**17
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EstimateParams:
-    """How a table's time is known before it is begun: by values of more and more sets at once.
+    """Parameters of the time estimate of a table, from values of more and more sets at once.
 
     ``elements`` : tables of fewer are begun at once [1]; ``first``, ``most`` : sets valued together [1]
     ``seconds`` : a batch that takes longer is the last [s]: more is a better estimate that costs more
@@ -59,7 +59,7 @@ class Metered(SetFunction):
         self._known: dict[bytes, float] = {} if known is None else known
 
     def within(self, budget: Budget) -> Metered:
-        """The same in another budget; what is known already costs it nothing."""
+        """Return the function with another budget; values known already cost nothing."""
         return Metered(self.f, budget, self._known)
 
     @property
@@ -69,12 +69,12 @@ class Metered(SetFunction):
 
     @property
     def rounding(self) -> float:
-        """As of the function itself."""
+        """Rounding of the function itself."""
         return self.f.rounding
 
     @property
     def most_total_curvature(self) -> float:
-        """As of the function itself."""
+        """Bound of the function itself."""
         return self.f.most_total_curvature
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

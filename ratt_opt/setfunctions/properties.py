@@ -1,4 +1,4 @@
-"""What a set function is: each check returns a witness against the property, or says that none exists.
+"""Checks of properties of set functions: each returns a witness against the property, or says that none exists.
 
 ``None`` is a statement: every set was looked at (or theory decides). If the ground set is too large for a table, or
 the time too short, the answer is a witness or :class:`NotFound`, which is false, counts its trials and claims nothing
@@ -81,7 +81,7 @@ class _Question:
             return None
 
     def sampled(self) -> Violation | NotFound:
-        """What random sets say."""
+        """Search random sets for a violation."""
         return sample(
             self.f,
             self.rule,
@@ -94,7 +94,7 @@ class _Question:
 
     @property
     def rounding(self) -> float:
-        """By how much a slack may be off: for each value in it, what is known of its error."""
+        """Bound on the error of a slack: one error for each value in it."""
         f, values = self.f, 1 if self.rule == "non-negative" else len(INEQUALITIES[self.rule].split("f(")) - 1
         if isinstance(f, InformationObjective):
             return values * value_error(f, list(np.arange(f.n)[:, None]), 0.0)
@@ -207,7 +207,7 @@ def find_submodularity_violation(
 
 
 def is_proved(f: SetFunction) -> bool:
-    """Whether theory knows its properties: one of the library's criteria, whose formula is no user's own."""
+    """Tell whether theory knows its properties: one of the library's criteria, whose formula is no user's own."""
     return isinstance(f, InformationObjective) and f.error_scale(np.ones(f.n_targets)) is not None
 
 

@@ -39,7 +39,7 @@ class Modular(SizedFunction):
 
     @property
     def has_exact_values(self) -> bool:
-        """Whether all that is added up is whole."""
+        """True if all summands are whole."""
         return are_exact(self.weights, self.n)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
@@ -73,7 +73,7 @@ class PartitionMatroidRank(SizedFunction):
 
     @property
     def has_exact_values(self) -> bool:
-        """Whether all that is added up is whole."""
+        """True if all summands are whole."""
         return are_exact(self.weights, self.n)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

@@ -76,7 +76,7 @@ def _norms(integers: Any, exponent: int) -> FloatArray:
 
 
 def is_definite(matrix: FloatArray) -> bool:
-    """Whether a symmetric (d, d) matrix is positive definite, exactly: elimination in fractions has positive pivots."""
+    """Decide exactly whether a symmetric (d, d) matrix is positive definite, by elimination in fractions."""
     rows = [[Fraction(x) for x in row] for row in matrix.tolist()]
     for k, pivot in enumerate(rows):
         if pivot[k] <= 0:
@@ -141,7 +141,10 @@ def _blocks(linked: Any) -> list[IntArray]:
 
 
 def _planar_negative_part(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-    """The same of ``[[a, b], [b, c]]``: ``(b^2 - ac) / lambda_max``, with exact products, or by Gershgorin's discs."""
+    """Bound the negative part of ``[[a, b], [b, c]]``.
+
+    It is ``(b^2 - ac) / lambda_max``, with exact products, or the bound of Gershgorin's discs.
+    """
     largest = np.maximum(np.maximum(np.abs(a), np.abs(c)), np.abs(b))
     exponent = np.frexp(largest)[1]
     a, b, c = (np.ldexp(x, -exponent) for x in (a, b, c))

@@ -53,7 +53,7 @@ class Violation:
 
     @property
     def inequality(self) -> str:
-        """What the sets break."""
+        """Inequality that the sets violate."""
         return INEQUALITIES[self.rule]
 
     @property

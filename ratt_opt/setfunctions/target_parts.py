@@ -35,7 +35,7 @@ class TargetParts(Decomposition):
 
     @property
     def is_sum(self) -> bool:
-        """Whether targets add up."""
+        """True if targets add up."""
         return self._is_sum
 
     @property

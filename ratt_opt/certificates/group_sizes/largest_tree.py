@@ -43,7 +43,7 @@ class Found:
     most: int
 
     def number(self, bound: tuple[int, tuple[int, ...]]) -> int:
-        """That of a bound, old or new."""
+        """Return the number of a bound, old or new."""
         return self.bounds.setdefault(bound, len(self.bounds))
 
 
@@ -103,12 +103,12 @@ class _Tree:
             self._ask_place(case, looked.place, stack)
 
     def _average(self, values: FloatArray, missing: int) -> float:
-        """Of the ``missing`` least values: the least of all if the verifier cannot take averages."""
+        """Average the ``missing`` least values, or return the least of all if the verifier cannot take averages."""
         values = np.sort(values)
         return float(values[:missing].mean() if self.objective.verifier_averages else values[0])
 
     def _is_impossible(self, case: _Case, missing: int, may_see: int) -> bool:
-        """What the verifier asks of a leaf that is beyond the budgets."""
+        """Test the verifier's conditions for a leaf beyond the budgets."""
         blinded, size = case.inside & case.others, self.group.sensing + self.group.blinded
         if missing < 0 or blinded.bit_count() > self.group.blinded or case.inside.bit_count() > size:
             return True
@@ -122,7 +122,7 @@ class _Tree:
         stack.append(replace(case, posterior=case.posterior + self.own[i], grown=True))
 
     def _ask_place(self, case: _Case, place: FloatArray, stack: list[_Case]) -> None:
-        """Of the robot that is least clearly inside or outside the best fractional group."""
+        """Branch on the robot that is least clearly inside or outside the best fractional group."""
         open_ = robots_of(self.everyone & ~(case.inside | case.outside))
         if not open_:
             raise NotClosedError

@@ -32,16 +32,19 @@ Measured on RATT's plans for 24 robots of a dense graph: with 3 and 18 a tree ha
 to ten times as long to find."""
 
 LINK = 2
-"""Of costs, each link that leaves a group: twice as much as in the attacker's scores."""
+"""Cost of each link that leaves a group: twice as much as in the attacker's scores."""
 
 SPARE = 0.02
-"""What is left below a bound for rounding the diagonal, in twice the links."""
+"""Room left below a bound for rounding the diagonal, in twice the links."""
 
 
 @dataclass(frozen=True, slots=True)
 class Looked:
-    """What is known of a case: the bound that closes it, if any (``vector``, ``diagonal``); ``place`` (N,) of its
-    best fractional group; ``multipliers`` (K, N) to begin with in its parts."""
+    """Bounds of a case.
+
+    ``vector``, ``diagonal`` : the bound that closes it, if any; ``place`` (N,) of its best fractional group;
+    ``multipliers`` (K, N) to begin with in its parts
+    """
 
     vector: int
     diagonal: tuple[int, ...]
@@ -142,7 +145,7 @@ def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: flo
 
 
 def _rounded(diagonal: FloatArray) -> IntArray:
-    """In the verifier's units of a form twice as large, a little above."""
+    """Round up to the verifier's units of a form twice as large."""
     return np.ceil(2 * UNIT * diagonal).astype(np.int64) + 1
 
 

@@ -57,7 +57,7 @@ class Case:
 
     @property
     def more(self) -> int:
-        """How many robots may sense besides those that do for sure."""
+        """Number of robots that may sense besides those that do for sure."""
         return self.most - self.sensing.bit_count()
 
     @property
@@ -178,7 +178,7 @@ class Cases:
         self.worth.require(case.known)
 
     def _close_copies(self, case: Case, _: object) -> None:
-        """So many robots sense besides those that do for sure, and with any so many of these the group is worth it."""
+        """Close a case: the sure robots with any ``count`` missing ones of the possible robots reach the claim."""
         among, count = case.may_sense, case.least - case.sensing.bit_count()
         if count <= 0:
             inside = case.inside
@@ -193,7 +193,7 @@ class Cases:
         need(self._is_beyond(case), "lower proof: a leaf's group may be part of an attack")
 
     def _is_beyond(self, case: Case) -> bool:
-        """Whether no group of the case is left by an attack within the budgets."""
+        """Test whether an attack within the budgets leaves no group of the case."""
         inside, outside, lost = case.inside, case.outside, 0
         possible = self.everyone & ~outside
         if _is_short(case) or max(case.sensing.bit_count(), case.least) > case.most:
@@ -207,7 +207,7 @@ class Cases:
         return lost > self.about.alpha_c or self._is_apart(inside, possible)
 
     def _is_apart(self, inside: int, possible: int) -> bool:
-        """Whether robots inside are not connected by possible ones."""
+        """Test whether robots inside are not connected by possible ones."""
         reached = front = inside & -inside
         while front:
             i = front.bit_length() - 1
@@ -217,7 +217,7 @@ class Cases:
 
 
 def _is_short(case: Case) -> bool:
-    """Whether fewer robots may sense than must."""
+    """Test whether fewer robots may sense than must."""
     return case.sensing.bit_count() + case.may_sense.bit_count() < case.least
 
 

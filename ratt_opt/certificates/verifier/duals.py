@@ -1,4 +1,4 @@
-"""What the groups of an attack cost at dual prices, and that no groups within the budgets partition the team.
+"""Costs of an attack's groups at dual prices, and proof that no groups within the budgets partition the team.
 
 A group C of which b robots are blinded costs
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["Duals", "Listed", "check_duals", "check_partition"]
 
 LARGEST = 2**53
-"""Of duals and flows, in size."""
+"""Largest size of duals and flows."""
 MOST_LISTED = 250_000
 """Groups to choose from, and so the memory of a check."""
 
@@ -71,7 +71,7 @@ class Duals:
 
     @property
     def listed(self) -> list[Listed]:
-        """In the order in which leaves list them."""
+        """Groups in the order in which leaves list them."""
         return list(self._listed.values())
 
     def read_bounds(self, given: object) -> None:

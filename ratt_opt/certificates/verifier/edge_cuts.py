@@ -1,4 +1,4 @@
-"""Whether a certificate proves that groups of a size need links of at least some weight to be cut; in integers.
+"""Verify, in integers, that groups of a size need links of at least some weight to be cut.
 
 It states prices ``q >= 0`` of robots. Let every group S of at most ``size`` that links of weight > 0 connect have
 

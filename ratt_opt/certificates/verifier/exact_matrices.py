@@ -55,7 +55,7 @@ def definite(matrix: fmpq_mat) -> int:
 
 
 def is_positive(matrix: fmpz_mat) -> bool:
-    """Whether a symmetric matrix of integers is positive definite."""
+    """Decide whether a symmetric matrix of integers is positive definite."""
     return definite(fmpq_mat(matrix)) > 0
 
 

@@ -53,7 +53,7 @@ def _check_forced(cases: Cases, size: int) -> int:
 
 
 def is_forced(n: int, alpha_s: int, alpha_c: int, size: int) -> bool:
-    """Whether every attack on the complete graph of n robots leaves a group with ``size`` seeing robots.
+    """Decide whether every attack on the complete graph of n robots leaves a group with ``size`` unblinded robots.
 
     Otherwise groups n_1 + ... = n have (n^2 - sum n_k^2) / 2 <= alpha_c links between them and, to bring each below
     ``size``, sum max(0, n_k - size + 1) <= alpha_s. ``best[r][x]``: largest sum n_k^2 of r robots, blinding x.
@@ -73,4 +73,4 @@ CONCLUSIONS: dict[str, tuple[str, Callable[..., int]]] = {
     "cover": (" limits duals bounds tree partition", check_duals),
     "sizes": (" duals forms bounds trees", check_sizes),
 }
-"""By name, the fields that a proof has beside its lemma on sets, and what checks them."""
+"""Fields that a proof has beside its lemma on sets, and its check, by name of the conclusion."""

@@ -32,14 +32,14 @@ __all__ = ["MarginalBounds"]
 
 
 class _Told(NamedTuple):
-    """What an element tells, made semidefinite: ``matrices`` by target, of those that it tells anything about."""
+    """Information of an element, made semidefinite: ``matrices`` by target, without zero ones."""
 
     number: int
     matrices: dict[int, fmpq_mat]
 
 
 class _Beside(NamedTuple):
-    """Of one target and what is told of it: ``L``, its ``logdet``, and what it is worth."""
+    """State of one target with some information added: ``L``, its ``logdet``, and its value."""
 
     matrix: fmpq_mat
     logdet: arb
@@ -72,11 +72,14 @@ class MarginalBounds:
         return bound
 
     def _added(self, told: _Told, beside: list[tuple[int, ...]]) -> Any:
-        """What an element adds at most."""
+        """Bound the marginal of an element."""
         return sum((self._gain(j, beside[j], told.number) for j in told.matrices), arb(0))
 
     def _strongest_of(self, elements: tuple[int, ...]) -> _Told | None:
-        """What stands for all of some elements: the one that tells most, if no other tells more of any target."""
+        """Find one element whose information bounds that of all the others, if there is one.
+
+        It has the largest trace; its defects are enlarged, so that it has no less information about any target.
+        """
         information = self._about.information
         best = max(elements, key=lambda e: total(trace(x) for x in information[e]))
         lacking = list(self._about.defect[best])
@@ -105,7 +108,7 @@ class MarginalBounds:
         return _Beside(matrix, logdet, self._about.weights[target] * (logdet - before))
 
     def _gain_of(self, target: int, numbers: tuple[int, ...], number: int) -> Any:
-        """What is told adds to the value of one target, beside what else is told of it."""
+        """Compute the marginal value of an element for one target, beside others."""
         known = self._beside(target, numbers)
         matrix = known.matrix + self._told[number].matrices[target]
         afford(matrix)

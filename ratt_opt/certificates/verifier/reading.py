@@ -192,7 +192,7 @@ def packed(where: str, value: Any, d: int) -> fmpq_mat:
 
 @cache
 def places(d: int) -> list[int]:
-    """Where a lower triangle has each entry of the whole matrix."""
+    """Positions in a packed lower triangle of the entries of the whole matrix."""
     pairs = [(max(i, j), min(i, j)) for i in range(d) for j in range(d)]
     return [i * (i + 1) // 2 + j for i, j in pairs]
 

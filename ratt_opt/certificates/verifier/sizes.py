@@ -39,11 +39,11 @@ if TYPE_CHECKING:
 __all__ = ["UNIT", "LargestGroup", "LinkCosts", "check_sizes", "largest_groups"]
 
 LARGEST = 2**31
-"""Of duals, costs and diagonals, in size."""
+"""Largest size of duals, costs and diagonals."""
 MOST_ROBOTS = 200
 """A characteristic polynomial of so many rows takes less than a second; one of 1,000 minutes."""
 UNIT = 2**10
-"""Of diagonals."""
+"""Unit of diagonals."""
 
 
 def check_sizes(cases: Cases, size: int, *given: object) -> int:
@@ -96,7 +96,7 @@ class LinkCosts:
         self.near, self.link, n = near, link, len(near)
         degrees = [others.bit_count() for others in near]
         self.price = [link * degree - dual for degree, dual in zip(degrees, duals, strict=True)]
-        """What a robot costs if all its links leave the group; each link inside saves twice ``link``."""
+        """Cost of each robot if all its links leave the group; each link inside saves twice ``link``."""
         self.step = gcd(2 * link, *self.price) or 1
         self.slack = 2 * link * alpha_c - sum(duals)
         self.most: float = inf if any(duals) else link * alpha_c
@@ -114,7 +114,7 @@ class LinkCosts:
         self.least[size] = max(self.least[size], self._left(-(-least // self.step) * self.step))
 
     def are_above(self, limit: float, diagonal: list[int], case: tuple[int, int], count: int) -> bool:
-        """Whether the robots inside and any ``count`` of the others of a case (masks of both) are shown to cost more.
+        """Prove that the robots inside and any ``count`` of the others of a case (two masks) cost more than a limit.
 
         ``diagonal`` : (N,), in units
         """
@@ -162,7 +162,7 @@ class LargestGroup:
 
 
 def largest_groups(costs: list[LinkCosts], n_blinded: int, size: int) -> list[LargestGroup]:
-    """Those of fewer than ``size`` sensing robots that can be left if ``n_blinded`` robots are blinded."""
+    """List the groups of fewer than ``size`` sensing robots that can be largest if ``n_blinded`` robots are blinded."""
     n_sensing = len(costs[0].near) - n_blinded
     size = min(size, n_sensing + 1)
     tables, found = [list(_others(one.least, n_sensing, n_blinded, size)) for one in costs], []
@@ -176,10 +176,11 @@ def largest_groups(costs: list[LinkCosts], n_blinded: int, size: int) -> list[La
 
 
 def _others(least: list[float], n_sensing: int, n_blinded: int, size: int) -> Iterator[list[float]]:
-    """For a largest group of 0, 1, ... sensing robots: what the others cost at least, by blinded ones among them.
+    """Yield the least costs of the other groups, for a largest group of 0, 1, ... sensing robots.
 
-    What groups of at most a sensing robots, c together, with x blinded ones together cost at least is a table over c
-    and x; groups of one size more are added one by one.
+    Each is a list by the number of blinded robots among the others. The table over c and x has the least cost of groups
+    of at most a number of sensing robots each, c together, with x blinded ones together; groups of one size more are
+    added one by one.
     """
     best = [[inf] * (n_blinded + 1) for _ in range(n_sensing + 1)]
     best[0][0] = 0.0

@@ -1,4 +1,4 @@
-"""What a certificate proves, as a record and in words; decides nothing."""
+"""Proved statement of a certificate, as a record and in words; decides nothing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["Verified"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verified:
-    """What a certificate proves about one problem and one plan [unit of the objective].
+    """Proved statement about one problem and one plan [unit of the objective].
 
     No plan has a worst-case value above ``upper`` (proved). The plan ``elements`` has
     at least ``lower`` under every attack: proved if ``lower_proved``, otherwise only claimed.

@@ -1,4 +1,4 @@
-"""Whether a certificate proves its claim, decided exactly.
+"""Verify exactly that a certificate proves its claim.
 
 Imports no solver, no attacker, no numerical library. Trace and max-eigenvalue are decided in rational
 arithmetic, logarithms in balls (python-flint).

@@ -1,4 +1,4 @@
-"""How much the verifier works on one file before it says that the file is not decided.
+"""Limits of the verifier's work on one file, beyond which the file is not decided.
 
 A certificate comes from strangers: a short file can state numbers, matrices or trees that take days. The limits
 are asked between single operations, each of which is short because wide matrices are refused first.
@@ -34,9 +34,9 @@ __all__ = [
 ]
 
 SECONDS = 600.0
-"""For one file, unless the caller says otherwise; what the library writes for 30 robots takes seconds."""
+"""Seconds for one file, unless the caller says otherwise; proofs of the library for 30 robots take seconds."""
 MOST_BITS = 2**33
-"""Of exact numbers held at once (1 GiB)."""
+"""Bits of exact numbers held at once (1 GiB)."""
 WIDEST = 2**28
 """Largest ``d^4 * bits`` of a matrix: its exact inverse takes some 2e-8 s of each (4.6 s at d = 30, 300 bits)."""
 BITS_OF_A_FLOAT = 2200

@@ -1,4 +1,4 @@
-"""Whether sets of one plan's robots are worth a claim, exactly; all are asked about one claim.
+"""Decide exactly whether sets of one plan's robots reach a claimed value; all tests are about one claim.
 
 The matrices of a target are integers over one unit, so that sums of them are exact and quick. Of a matrix L the ends
 of its characteristic polynomial p are enough: ``|p(0)| = det L`` and ``-p'(0) / p(0) = tr(L^{-1})``, as both sides of
@@ -82,7 +82,7 @@ class Worth:
         return _held([times * x for x in self._own[robot]])
 
     def _are_worth(self, precision: int, cases: list[Known], count: int) -> bool:
-        """Whether any ``count`` of the cases (all positive definite) are worth it on average."""
+        """Test whether any ``count`` of the cases (all positive definite) reach the claim on average."""
         about, lower = self.about, self.lower
         if lower <= 0 and all(self._is_at_least(about.inverse, x) for x in cases):
             return True  # at least the prior's information is worth at least phi(empty set) = 0
@@ -114,7 +114,7 @@ class Worth:
         return about.prior_trace - fmpq(sum(self._errors(known, precision)), 1 << precision)
 
     def _errors(self, known: Known, precision: int) -> Iterator[int]:
-        """By target, its weighted trace in units of ``2^-precision``, rounded up."""
+        """Compute each target's weighted trace in units of ``2^-precision``, rounded up."""
         scales = self._scales(precision)
         if self.about.is_whole:
             return (-(scale * p_1 // p_0) for scale, (p_0, p_1) in zip(scales, self._ends(known), strict=True))
@@ -146,12 +146,12 @@ class Worth:
             yield matrix
 
     def _scales_at(self, precision: int) -> list[int]:
-        """By target, its weight over the unit of L, in units of ``2^-precision``, rounded up."""
+        """Compute each target's weight over the unit of L, in units of ``2^-precision``, rounded up."""
         weights = zip(self.about.weights, self._units, strict=True)
         return [int((w * (unit << precision)).ceil()) for w, unit in weights]
 
     def _logarithms_at(self, _: int) -> list[tuple[fmpq, list[int], arb]]:
-        """By weight, a few targets that have it, and a ball around the logarithm of what they are without robots."""
+        """Group targets by weight, a few at a time, with a ball around their log-determinant without robots."""
         about, found = self.about, []
         for weight in dict.fromkeys(about.weights):
             own = [j for j, w in enumerate(about.weights) if w == weight]
@@ -163,6 +163,6 @@ class Worth:
 
 
 def _held(known: Known) -> Known:
-    """The same, counted as held in memory: with what one path of cases adds to it."""
+    """Count a case as held in memory, with what one path of cases adds to it."""
     hold(fmpq(max(map(abs, known))), 2 * len(known))
     return known

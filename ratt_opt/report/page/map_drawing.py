@@ -28,7 +28,7 @@ SIGMAS = 2.4477
 MARK = 11.0
 """Half the width of a robot or target."""
 LETTER, LINE, BELOW, SPREAD = 6.8, 14.0, 3.5, 1.3
-"""Of words: width of a letter, height of a line, what is below its foot, and offsets over those on paper."""
+"""Sizes of words: width of a letter, height of a line, space below its foot, and offsets over those on paper."""
 MOST_LINKS = 400
 """More links of groups than this are not drawn: they would be one blot, and make the page large. Cut ones are."""
 
@@ -238,7 +238,7 @@ def _words(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> It
 
 
 def _box(text: str, x: float, y: float, spot: tuple[float, float, str]) -> Box:
-    """Where a word would be in a spot beside its place."""
+    """Return the box of a word in a spot beside its place."""
     dx, dy, side = spot
     width = LETTER * len(text)
     left = x + SPREAD * dx - {"left": 0.0, "center": width / 2, "right": width}[side]

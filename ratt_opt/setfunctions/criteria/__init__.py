@@ -1,4 +1,4 @@
-"""What is lost when targets are known only so well: one file per criterion, and one registry.
+"""Criteria of the uncertainty about targets: one file per criterion, and one registry.
 
 Open ``trace.py`` first: a criterion is a subclass of ``InformationObjective`` (``../information.py``) that owns its
 name, unit, value, supergradient and, optionally, a Fenchel cut, bounds on its marginals and a two-by-two kernel.

@@ -72,7 +72,7 @@ class LogDetObjective(InformationObjective):
         return Tangent(self.weights[:, None, None] * y, float((self._baseline - self.weights * logdets).sum()))
 
     def target_tangents(self, point: FloatArray) -> TargetTangents:
-        """The same target by target, with ``Y = R R'`` for a triangular ``R``, whose determinant is a product."""
+        """Return the tangent by target, with ``Y = R R'`` for a triangular ``R``, whose determinant is a product."""
         root = np.linalg.cholesky(symmetric_inverse(point))
         weights, turned = self.weights[:, None, None], np.swapaxes(root, -1, -2)
         logarithms = 2 * np.log(np.diagonal(root, axis1=-2, axis2=-1))

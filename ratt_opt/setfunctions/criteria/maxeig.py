@@ -189,7 +189,7 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
     output: FloatArray
     stated = StateCriterion.stated
     error_scale = StateCriterion.error_scale
-    # What is written in levels and axes holds as it stands.
+    # Parts written in levels and axes apply unchanged.
     prior_criterion = MaxEigenvalueObjective.prior_criterion
     combine = MaxEigenvalueObjective.combine
     tangent_targets = MaxEigenvalueObjective.tangent_targets

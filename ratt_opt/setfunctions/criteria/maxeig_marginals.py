@@ -49,7 +49,7 @@ MARGIN = 1e-9
 
 
 class Levels(Protocol):
-    """What a criterion needs whose value is one over its lowest level (``maxeig.py``)."""
+    """Parts of a criterion whose value is one over its lowest level (``maxeig.py``)."""
 
     @property
     def n(self) -> int:

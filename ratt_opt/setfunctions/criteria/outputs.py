@@ -29,7 +29,7 @@ class StateCriterion(InformationObjective):
 
     output: FloatArray | None
     of_part: ClassVar[type[StateCriterion]]
-    """That class; a subclass of the one for whole states."""
+    """Class for a part of the state; a subclass of the one for whole states."""
 
     def __new__(cls, *_: Any, output: ArrayLike | None = None, **__: Any) -> Self:
         """An instance of the class that has the formulas."""
@@ -53,7 +53,7 @@ class StateCriterion(InformationObjective):
         super().__init__(prior, information, weights)
 
     def of_target(self, target: int) -> Self:
-        """The same criterion of one target alone."""
+        """Return the criterion of one target alone."""
         one = super().of_target(target)
         one.output = None if self.output is None else readonly(self.output[target : target + 1])
         return one

@@ -18,7 +18,7 @@ __all__ = ["CERTIFIED", "CRITERIA", "WITH_OUTPUT", "criterion_called"]
 CRITERIA: dict[str, type[InformationObjective]] = {
     name: getattr(import_module(f"ratt_opt.setfunctions.criteria.{name}"), kind) for name, kind in CLASSES.items()
 }
-"""By their names, in the order of ``names.py``."""
+"""Criteria by name, in the order of ``names.py``."""
 
 CERTIFIED: tuple[type[InformationObjective], ...] = (
     *CRITERIA.values(),
@@ -30,7 +30,7 @@ CERTIFIED: tuple[type[InformationObjective], ...] = (
 WITH_OUTPUT: dict[str, type[TraceObjective | MaxEigenvalueObjective]] = {
     kind.name: kind for kind in (TraceObjective, MaxEigenvalueObjective)
 }
-"""Those that can be of a part of the state, ``output=C``."""
+"""Criteria that support a part of the state, ``output=C``, by name."""
 
 
 def criterion_called(name: str) -> type[InformationObjective]:

@@ -100,7 +100,7 @@ class TraceObjective(StateCriterion):
         return Tangent(slope, float((self._baseline - 2 * self.weights * traces).sum()))
 
     def target_tangents(self, point: FloatArray) -> TargetTangents:
-        """The same target by target."""
+        """Return the tangent target by target."""
         y = symmetric_inverse(point)
         traces = 2 * self.weights * np.trace(y, axis1=-2, axis2=-1)
         weights, sizes = self.weights[:, None, None], abs(y)
@@ -112,7 +112,7 @@ class TraceObjective(StateCriterion):
         )
 
     def marginals_beyond(self, base: FloatArray, information: FloatArray) -> FloatArray:
-        """Those at the base, or at an extreme point of lower rank below its covariance."""
+        """Bound marginals beyond the base by those at the base, or at a point of lower rank below its covariance."""
         alone = self.criterion(base)[:, None] - self.criterion(base[:, None] + information)
         values, vectors = np.linalg.eigh(symmetric_inverse(base))
         root = (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]) @ np.swapaxes(vectors, -1, -2)
@@ -144,7 +144,7 @@ class TraceObjective(StateCriterion):
         return self._largest_marginals(np.asarray(np.linalg.eigvalsh(self.prior)[:, -1], dtype=np.float64))
 
     def _largest_marginals(self, largest: FloatArray) -> FloatArray:
-        """The same, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
+        """Bound each marginal, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
         values, vectors = np.linalg.eigh(self.prior)
         root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
         q = _upper_eigenvalues(root, self.information).clip(0.0)
@@ -245,7 +245,7 @@ class OutputTraceObjective(TraceObjective):
         return Tangent(self.gradient(point), float((self._baseline - value).sum()))
 
     def target_tangents(self, point: FloatArray) -> TargetTangents:
-        """The same target by target."""
+        """Return the tangent target by target."""
         y, weights = self._fenchel(point), self.weights[:, None, None]
         values = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, y)
         sizes = 2 * self.weights * np.einsum("mqd,mdq->m", abs(self.output), abs(y))
