@@ -30,11 +30,11 @@ if TYPE_CHECKING:
 __all__ = ["beam_sequences", "best_alone", "solve_by_columns"]
 
 INNER_SHARE = 0.5
-"""Of the gap, for the search over some elements; the rest is for what was left out."""
+"""Share of the gap for the search over some elements; the rest is for the elements left out."""
 
 
 def beam_sequences(world: World, belief: Belief, poses: FloatArray, time: float) -> Sequences:
-    """For each robot the ``beam`` sequences worth most alone, grown from those that were after one step less."""
+    """Grow the ``beam`` sequences of each robot with the largest individual values, step by step."""
     scenario, width = world.scenario, check_integer("beam", world.model.beam, low=1)
     level = replace(world, horizon=1).sequences(poses)
     for h in range(1, world.horizon + 1):

@@ -1,4 +1,4 @@
-"""What a group of robots believes of the targets: Gaussian, predicted by their motion, updated in information form."""
+"""Beliefs of a group of robots about the targets: Gaussian, predicted by their motion, updated in information form."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["Belief", "Innovation", "Motion"]
 
 
 class Motion(Protocol):
-    """How states (..., M, d) move over a period; ``time`` is that of the state given [s]."""
+    """Motion of states (..., M, d) over a period; ``time`` is that of the state given [s]."""
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:
         """(..., M, d) states one period later, without noise."""

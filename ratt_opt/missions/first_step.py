@@ -23,7 +23,7 @@ __all__ = ["first_step", "first_world"]
 
 
 def first_step(scenario: object, model: MissionModel) -> InformationInput:
-    """What the team plans with in the first step of a mission with this model: its sensors, motions and filter.
+    """Return the input of the first step of a mission with this model: its sensors, motions and filter.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def first_step(scenario: object, model: MissionModel) -> InformationInput:
 
 
 def first_world(scenario: Scenario, model: MissionModel) -> PlannerWorld:
-    """What planners of that problem may look at."""
+    """Return the world that planners of that problem may look at."""
     *_, team = _first(scenario, model)
     return team.parts[0].world
 

@@ -1,4 +1,4 @@
-"""What survives a kill: one line a step with its decisions, from which a mission is replayed and goes on.
+"""Journal of a mission: one line a step with its decisions, from which it is replayed and continued after a kill.
 
 Each line carries a checksum of the rest of it: what was damaged since is refused by its line.
 

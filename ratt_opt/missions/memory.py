@@ -29,14 +29,14 @@ __all__ = ["Memory", "Pieces"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pieces:
-    """What each robot measured in one step: ``information`` (N, M, d, d) and ``vector`` (N, M, d)."""
+    """Measurements of one step by robot: ``information`` (N, M, d, d) and ``vector`` (N, M, d)."""
 
     information: FloatArray
     vector: FloatArray
 
     @classmethod
     def none(cls, n_robots: int, belief: Belief) -> Pieces:
-        """Nothing measured by anybody."""
+        """Return zeros: no robot has measured anything."""
         return cls(np.zeros((n_robots, *belief.covariance.shape)), np.zeros((n_robots, *belief.mean.shape)))
 
     def of(self, robots: BoolArray) -> tuple[FloatArray, FloatArray]:
@@ -66,7 +66,7 @@ class Memory:
         return cls(motion, period, belief, 0.0, (), np.zeros((n_robots, 0, n_robots), dtype=np.bool_))
 
     def belief(self, robot: int) -> Belief:
-        """What a robot believes after the last step: the filter over all pieces that it holds."""
+        """Compute a robot's belief after the last step: the filter over all pieces that it holds."""
         start = len(self.steps)
         while start and self._key(robot, start) not in self._known:
             start -= 1
@@ -92,7 +92,7 @@ class Memory:
         return replace(self, steps=(*self.steps, pieces), holds=readonly(np.concatenate([self.holds, new], axis=1)))
 
     def _forgotten(self) -> Memory:
-        """The same with the steps that all robots know alike in the base."""
+        """Move the steps that all robots know alike into the base."""
         alike = (self.holds == self.holds[:1]).all(axis=(0, 2))
         count = len(self.steps) if alike.all() else int(np.argmin(alike))
         if count == 0:

@@ -48,7 +48,7 @@ class Now:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TeamPlan:
-    """What can be chosen in a step: ``sequences`` are the elements of ``problem``, the whole team's.
+    """Choices of a team in one step: ``sequences`` are the elements of ``problem``, the whole team's.
 
     ``links_short`` : by how many links the network is smaller than what may be cut.
     """
@@ -89,7 +89,7 @@ def capped(problem: Problem, alpha_s: int, alpha_c: int) -> Problem:
 
 
 def plan_team(world: World, memory: Memory, now: Now, threatened: Threatened) -> TeamPlan:
-    """What the team can choose in a step, after everybody who is connected has told what it knows."""
+    """Build the problem of a step, after all connected robots have shared their measurements."""
     poses, time = now.poses, now.time
     apart = world.communication(poses, threatened.standing).groups()
     memory = memory.shared(apart)
@@ -104,7 +104,7 @@ def plan_team(world: World, memory: Memory, now: Now, threatened: Threatened) ->
 
 
 def planner_world(world: World, belief: Belief, sequences: Sequences, problem: Problem, now: Now) -> PlannerWorld:
-    """What planners of a team's problem may look at."""
+    """Return the world that planners of a team's problem may look at."""
     ahead, scenario = belief.predicted(world.motion, world.period, now.time), world.scenario
     return PlannerWorld(
         step=now.step,

@@ -1,4 +1,4 @@
-"""What a mission returns: every step as it happened, and what is made of them."""
+"""Result of a mission: every step as it happened, and figures over all steps."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ class FlownMission(ByValue):
         return readonly(np.array([s / n if n else np.nan for s, n in pairs]))
 
     def nees_band(self, level: float = 0.95) -> tuple[float, float]:
-        """What :attr:`nees` of a step lies in with probability ``level`` for a consistent filter (chi-square)."""
+        """Return the interval of :attr:`nees` with probability ``level`` for a consistent filter (chi-square)."""
         _check_level(level)
         freedom = self.dimension * self.scenario.n_targets
         low, high = (float(_chi_square(end, freedom)) for end in ((1 - level) / 2, (1 + level) / 2))
@@ -139,7 +139,7 @@ class FlownMission(ByValue):
         return readonly(np.stack([_chi_square(end, counts) / counts for end in ends], axis=-1))
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``mission.json`` holds: settings, and the figures of every step."""
+        """Return the content of ``mission.json``: settings, and the figures of every step."""
         low, high = self.nees_band()
         return {
             "format": "ratt-opt mission",
@@ -161,7 +161,7 @@ class FlownMission(ByValue):
 
 
 def _chi_square(probability: float, freedom: FloatArray | int) -> FloatArray:
-    """What a chi-square variable stays below with this probability; (...) like the degrees of freedom."""
+    """Quantile of the chi-square distribution; (...) like the degrees of freedom."""
     return np.asarray(2 * gammaincinv(np.asarray(freedom) / 2, probability), dtype=np.float64)
 
 

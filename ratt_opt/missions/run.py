@@ -177,7 +177,7 @@ class _Flight:
         return elements_of(planned_with(self.players.plan, part.problem, part.world), part.problem)
 
     def _attacked(self, step: int, team: TeamPlan, elements: IntArray, threatened: Threatened) -> Attack:
-        """What is in force in this step: what stood before and what the attacker adds."""
+        """Return the attack in force in this step: standing failures and the attacker's new ones."""
         standing = threatened.standing
         sensors, links = self.players.model.strikes(
             threatened, len(team.problem.communication.links), self._rng(step, STRIKE)

@@ -1,4 +1,4 @@
-"""From measurements to pieces of information: linearised where a group believes the targets to be."""
+"""Pieces of information from measurements, linearised where a group believes the targets to be."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ ON_TOP = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reading:
-    """What one robot measured: ``values`` (M, k), of the targets ``seen`` (M,)."""
+    """Reading of one robot: ``values`` (M, k), of the targets ``seen`` (M,)."""
 
     values: FloatArray
     seen: BoolArray
 
 
 def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck: FloatArray) -> list[Reading]:
-    """What every robot would measure of targets in states ``truth`` (M, d); ``luck`` (N, M, k) standard normal."""
+    """Simulate every robot's reading of targets in states ``truth`` (M, d); ``luck`` (N, M, k) standard normal."""
     readings: dict[int, Reading] = {}
     for sensor, robots in world.alike:
         here, states = poses[robots][:, None], truth[:, : sensor.reads]
@@ -118,7 +118,7 @@ def innovations_squared(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sightings:
-    """What K robots with the same sensor measured, from ``poses`` (K, M, p): ``values`` (K, M, k), ``seen`` (K, M).
+    """Readings of K robots with the same sensor, from ``poses`` (K, M, p): ``values`` (K, M, k), ``seen`` (K, M).
 
     ``pose_covariances`` : (K, p, p), or ``None`` if the poses are exact.
     """

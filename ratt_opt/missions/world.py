@@ -1,4 +1,4 @@
-"""What one step of a mission is made of: how things move and are measured, and the max-min problem that follows."""
+"""World of one step of a mission: motions, sensors, and the max-min problem that follows from them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ Linearisation = Literal["first order", "second order", "iterated"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MissionModel:
-    """How a mission's targets and robots move and measure, and what its plans are for.
+    """Model of a mission: motions and sensors of its targets and robots, and the criterion of its plans.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def _is_rectangle(area: object) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Threatened:
-    """What is known to have failed when a plan is made, and the budgets that may still strike."""
+    """Known failures when a plan is made, and the budgets that may still strike."""
 
     standing: Attack
     alpha_s: int
@@ -237,7 +237,7 @@ class World:
         return graph
 
     def _predictions(self, belief: Belief, time: float) -> list[Belief]:
-        """What is believed after 1, ..., H steps without a measurement."""
+        """Predict the belief 1, ..., H steps ahead without a measurement."""
         beliefs: list[Belief] = []
         for h in range(self.horizon):
             belief = belief.predicted(self.motion, self.period, time + h * self.period)

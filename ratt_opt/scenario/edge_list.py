@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["parse_edge_list"]
 
 OTHER_MARKS = ("%", "//", "/*", "*", ";", "!", "--", "<", "[", "{", "(")
-"""What begins a line of other formats: comments, sections, Pajek, MatrixMarket, XML, JSON."""
+"""First characters of lines of other formats: comments, sections, Pajek, MatrixMarket, XML, JSON."""
 NOT_IN_A_NAME = re.compile(r"""[,;|"<>\[\]{}]|^'|'$""")
 INTEGER = re.compile(r"[+-]?\d+")
 HEADINGS = re.compile(

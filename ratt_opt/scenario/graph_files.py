@@ -46,7 +46,7 @@ def read_graph(path: str | Path) -> nx.Graph:
         raise
     except UnicodeDecodeError as error:
         raise FileFormatError(str(path), "must be UTF-8 text", f"byte {error.start} is not") from None
-    # What networkx raises for a file that is not of its format depends on where it first fails.
+    # networkx raises many types for a file that is not of its format: it depends on where it first fails.
     except (nx.NetworkXException, SyntaxError, ValueError, TypeError, LookupError, AttributeError) as error:
         raise FileFormatError(str(path), f"must be {kind}", f"{error}" or type(error).__name__) from None
     except RecursionError:

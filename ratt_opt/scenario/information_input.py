@@ -157,7 +157,7 @@ class InformationInput(ProblemRecord):
         return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
 
     def replace(self, **changes: Any) -> Self:
-        """As for any record; the payload stays unless it is changed."""
+        """Replace fields; the payload stays unless it is changed."""
         return super().replace(**({"payload": self.payload} | changes))
 
     def _fields(self) -> dict[str, Any]:

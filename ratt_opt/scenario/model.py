@@ -299,7 +299,7 @@ class Scenario(ProblemRecord):
         return self.to_information() if self.own_sensors else self
 
     def to_information(self) -> InformationInput:
-        """The same one-step problem as matrices: what a sensor class of your own tells goes into a file this way."""
+        """Return the same one-step problem as matrices; files hold a sensor class of your own this way."""
         links = near_pairs(self.poses, self.communication_range) if self.communication_range else self.links
         return InformationInput(
             prior=nested(self.prior),
@@ -383,7 +383,7 @@ def _label(motion: str, control: list[float]) -> str:
 
 
 def _unnamed(sensor: Sensor | SensorModel) -> str:
-    """What a sensor is that no file can name; nothing if one can."""
+    """Describe a sensor that no file can name; empty if one can."""
     if type(sensor) is Sensor or kind_of(sensor):
         return ""
     if isinstance(sensor, SensorModel):

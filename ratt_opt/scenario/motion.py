@@ -1,4 +1,4 @@
-"""How robots and targets move in one sampling period."""
+"""Motion of robots and targets in one sampling period."""
 
 from __future__ import annotations
 

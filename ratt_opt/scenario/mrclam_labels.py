@@ -1,4 +1,4 @@
-"""Which landmark a label means: decided from the sightings, or as the caller says, and in words which it was.
+"""Assignment of labels to landmarks: decided from the sightings, or given by the caller, and explained in words.
 
 The barcode table of a dataset may name landmarks wrongly. Every sighting is compared with every landmark, seen from the
 robot's pose at that time. The labelling under which most sightings fit is taken for the true one; it differs from the
@@ -29,7 +29,10 @@ FEWEST, CLEAR = 10, 2.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LabelEvidence:
-    """How many sightings of the corrected labels, or of all if none is, fit as labelled, and as corrected."""
+    """Number of sightings that fit as labelled, and as corrected.
+
+    Counted are those of the corrected labels, or all if none is corrected.
+    """
 
     sightings: int
     fit_as_labelled: int
@@ -85,7 +88,7 @@ class Sightings:
         return dict(sorted(found.items()))
 
     def evidence(self, corrections: Mapping[int, int]) -> LabelEvidence:
-        """What speaks for these corrections and against."""
+        """Count the sightings for and against these corrections."""
         place = {subject: k for k, subject in enumerate(self.subjects)}
         named = [place[subject] for subject in (corrections or self.subjects) if subject in place]
         meant = [place.get(corrections.get(self.subjects[k], self.subjects[k]), k) for k in named]
@@ -96,7 +99,7 @@ class Sightings:
         )
 
     def told(self, corrections: Mapping[int, int], *, decided: bool) -> str:
-        """In one line which labelling is used, who decided that, and how many sightings fit."""
+        """Say in one line which labelling is used, who decided that, and how many sightings fit."""
         found, by = self.evidence(corrections), "as the sightings say" if decided else "as given"
         if not corrections:
             return f"labels kept, {by}: {found.fit_as_labelled} of {found.sightings} sightings fit as labelled"

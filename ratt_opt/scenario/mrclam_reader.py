@@ -27,7 +27,7 @@ LARGEST_IDENTIFIER = 10**9
 """Far above any subject or barcode, and exact as a float."""
 
 _POSE_FILES = ("Robot{}_Groundtruth.dat", "Robot{}_Pose_estimated.dat")
-"""In order of preference: the dataset's own ground truth, then poses estimated from its measurements."""
+"""Pose files in order of preference: the dataset's own ground truth, then poses estimated from its measurements."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -124,7 +124,7 @@ def _pose_file(folder: Path, number: int) -> Path | None:
 
 
 def _log(path: Path) -> FloatArray:
-    """What a robot measured; a robot may have seen nothing."""
+    """Read a robot's measurements; there may be none."""
     return _table(path, 4, identifiers=(1,), unique=False, empty=True)
 
 

@@ -27,10 +27,10 @@ __all__ = ["NETWORK_FAMILIES", "network_links", "network_scenario"]
 Link = tuple[int, int]
 
 DENSITY = 0.7
-"""Of the dense random graph: about what a team in one building hears."""
+"""Density of the dense random graph: about the share of robots that a robot hears in one building."""
 
 NEIGHBOURS, REWIRED = 6, 0.2
-"""Of the small world: neighbours on a ring, and the share of links that lead elsewhere.
+"""Parameters of the small world: neighbours on a ring, and the share of links that lead elsewhere.
 
 Source: Watts and Strogatz, Nature 393 (1998).
 """

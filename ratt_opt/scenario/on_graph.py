@@ -67,7 +67,7 @@ def graph_scenario(
 
 
 def _read_as(graph: nx.Graph, team: nx.Graph) -> Iterable[str]:
-    """What became of a graph that is not simple."""
+    """Yield remarks on a graph that is not simple."""
     loops = nx.number_of_selfloops(graph)
     if loops:
         yield f"self-loops left out: {loops}"

@@ -16,5 +16,5 @@ def replaced_methods(sensor: Sensor) -> tuple[str, ...]:
 
 
 def tells_itself(sensor: Sensor) -> bool:
-    """Whether the sensor states its information itself, whatever its noise fields say."""
+    """Tell whether the sensor states its information itself, whatever its noise fields say."""
     return "information" in replaced_methods(sensor)

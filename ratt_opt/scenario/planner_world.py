@@ -21,7 +21,7 @@ __all__ = ["PlannerWorld", "lengths_of", "scenario_world"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class PlannerWorld(ByValue):
-    """What a planner ``f(problem, world)`` may look at beside the problem.
+    """World that a planner ``f(problem, world)`` may look at beside the problem.
 
     ``step``, ``time`` : number of the step, and seconds since the start.
     ``poses`` : (N, 3 or 4) x [m], y [m], heading [rad] and, if a robot flies, height [m], now.

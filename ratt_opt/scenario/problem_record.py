@@ -1,4 +1,4 @@
-"""What both kinds of input share: links, budgets and protections, and the problem that they become."""
+"""Common part of both kinds of input: links, budgets and protections, and the problem that they become."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class ProblemRecord(Record):
 
     @property
     def storable(self) -> ProblemRecord:
-        """The same problem as a file can hold it: this record, unless it has what no file can name."""
+        """Return the record in a form that a file can hold; the record itself unless no file can name its parts."""
         return self
 
     @property

@@ -48,7 +48,7 @@ class Sensor(Record):
         return (of_range, of_bearing) if self.law == "variance" else (of_range**2, of_bearing**2)
 
     def sees(self, distance: FloatArray, bearing: FloatArray) -> BoolArray:
-        """Whether a target at this range and bearing is inside the reach."""
+        """Tell whether a target at this range and bearing is inside the reach."""
         seen = np.ones(np.shape(distance), dtype=np.bool_)
         if self.max_range is not None:
             seen &= distance <= self.max_range
@@ -100,7 +100,7 @@ def variances_of(sensor: Sensor, distance: FloatArray, bearing: FloatArray) -> t
 
 
 def wrap_angle(angle: FloatArray) -> FloatArray:
-    """The same angle in ``(-pi, pi]`` [rad]."""
+    """Wrap an angle to ``(-pi, pi]`` [rad]."""
     wrapped = np.pi - np.mod(np.pi - angle, 2 * np.pi)
     # Just above pi the remainder rounds to 2 pi, which would give the excluded end.
     return np.where(wrapped <= -np.pi, np.pi, wrapped)

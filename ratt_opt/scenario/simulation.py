@@ -27,7 +27,7 @@ __all__ = ["Tracking", "simulate_tracking"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tracking:
-    """What a group of robots knows about the targets after one step, in each of ``D`` draws.
+    """Knowledge of a group of robots about the targets after one step, in each of ``D`` draws.
 
     ``truth`` : (D, M, 2) true positions [m], drawn from the predicted distribution.
     ``estimates`` : (D, M, 2) EKF estimates [m].

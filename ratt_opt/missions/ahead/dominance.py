@@ -60,7 +60,7 @@ def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dic
                 if pair[0] not in by and (found[f, e] == YES or _dominates(entries[pair[1]], entries[pair[0]])):
                     by[pair[0]] = pair[1]
     kept = np.array([e for e in range(len(owner)) if e not in by], dtype=np.int64)
-    # What dominated an element may have been dropped later: by transitivity, so does what dominates it.
+    # A dominating element may have been dropped later: by transitivity, its own dominator takes its place.
     return kept, {e: _last(by, f) for e, f in by.items()}
 
 
@@ -75,7 +75,7 @@ def _compared(entries: FloatArray) -> NDArray[np.int8]:
 
 
 def _dominates(more: FloatArray, less: FloatArray) -> bool:
-    """The same of one pair, exactly: (K, 3) entries."""
+    """Decide one pair exactly: (K, 3) entries."""
     for row, other in zip(more.tolist(), less.tolist(), strict=True):
         a, b, c = (Fraction(x) - Fraction(y) for x, y in zip(row, other, strict=True))
         if a < 0 or c < 0 or a * c < b * b:

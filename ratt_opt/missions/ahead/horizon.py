@@ -28,10 +28,11 @@ __all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covar
 
 OUTPUTS = ("mean", "last")
 NOISE_FLOOR = 1e-6
-"""Of a target's covariance: joint states whose steps determine each other (no process noise) get that much noise
-a step, so that their prior is invertible. It moves values by that share."""
+"""Noise a step for joint states whose steps determine each other (no process noise), as a share of the covariance.
+It makes their prior invertible, and moves values by that share."""
 MOST_SEQUENCES = 20_000
-"""Of one robot: twelve controls make 1,728 in three steps and 20,736 in four, whose matrices would take gigabytes."""
+"""Sequences of one robot at most: twelve controls make 1,728 in three steps and 20,736 in four, whose matrices would
+take gigabytes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -26,7 +26,7 @@ class Detections(Record):
 
 
 class BagMapping(Record):
-    """What a replay needs beside the bag.
+    """Mapping from a bag to a scenario: the input of a replay beside the bag.
 
     ``scenario`` : file of the team, relative to the mapping: its robots, what is known of its targets, sensors, budgets
     and sampling period. ``poses`` : topic of each robot's poses, by topic; ``detections`` : by topic.

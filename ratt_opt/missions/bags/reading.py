@@ -90,7 +90,7 @@ def read_bag(path: Path, topics: Collection[str]) -> Iterator[PoseMessage | Dete
 
 
 def _told(path: Path, topic: str, kind: str, message: Any) -> Iterator[PoseMessage | Detection]:
-    """What one message says."""
+    """Yield the poses or detections of one message."""
     time = message.header.stamp.sec + NANOSECONDS * message.header.stamp.nanosec if hasattr(message, "header") else 0.0
     if kind.endswith(("/Odometry", "/PoseWithCovarianceStamped")):
         yield PoseMessage(topic, time, _pose(message.pose.pose), _pose_covariance(message.pose.covariance))

@@ -1,4 +1,4 @@
-"""What a replay of a bag returns: every step as it was planned."""
+"""Result of replaying a bag: every step as it was planned."""
 
 from __future__ import annotations
 

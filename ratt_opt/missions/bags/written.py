@@ -1,4 +1,4 @@
-"""What a replay leaves in a folder: tables, a figure, and a log for viewers."""
+"""Files of a replay: tables, a figure, and a log for viewers."""
 
 from __future__ import annotations
 

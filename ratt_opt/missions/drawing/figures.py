@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["mission_figure"]
 
 FEW_TICKS = 20.0
-"""Of an axis that spans less than this factor the ticks between powers of ten have numbers too."""
+"""Span of an axis, as a factor, below which the ticks between powers of ten have numbers too."""
 
 
 def mission_figure(missions: Sequence[FlownMission]) -> Figure:

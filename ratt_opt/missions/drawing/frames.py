@@ -1,4 +1,4 @@
-"""What one picture of a mission shows, as plain data for the animation and the player alike."""
+"""Frames of a mission as plain data, for the animation and the player alike."""
 
 from __future__ import annotations
 

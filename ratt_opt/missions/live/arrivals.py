@@ -1,4 +1,4 @@
-"""What arrives at a step, checked: the clock, the poses, and every measurement with the time it was made."""
+"""Inputs of a step, checked: the clock, the poses, and every measurement with the time it was made."""
 
 from __future__ import annotations
 

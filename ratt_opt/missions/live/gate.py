@@ -76,7 +76,7 @@ class Sighted:
     pose_covariances: FloatArray | None
 
     def only(self, accepted: BoolArray) -> Sighted:
-        """What was accepted (N, M) of it."""
+        """Keep the readings that were accepted (N, M)."""
         kept = {i: Reading(one.values, one.seen & accepted[i]) for i, one in self.readings.items()}
         return Sighted(self.poses, kept, self.pose_covariances)
 

@@ -46,7 +46,7 @@ class Planned:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Asked:
-    """What a step asks: its ``problem``, the ``world`` it comes from, the rest of the last plan to ``start`` from."""
+    """Request of a step: its ``problem``, the ``world`` it comes from, the rest of the last plan to ``start`` from."""
 
     problem: Problem
     world: PlannerWorld

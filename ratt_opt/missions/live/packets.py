@@ -1,4 +1,4 @@
-"""What a step says of each measurement: taken in, skipped and why, and how surprising it was."""
+"""Reports of a step on each measurement: accepted, or skipped and why, with its innovation."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Skipped:
 
 @dataclass(frozen=True, slots=True)
 class MeasurementInnovation:
-    """How surprising a measurement was about the prediction, before any of the same time was taken in.
+    """Innovation of a measurement, before any measurement of the same time was applied.
 
     ``squared`` : normalised innovation squared; of a consistent filter a chi-square variable with as many degrees of
     freedom as the measurement has numbers (``count``). ``accepted`` : whether it was taken in.

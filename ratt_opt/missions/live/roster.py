@@ -21,7 +21,7 @@ __all__ = ["threat", "with_attack", "with_target", "without_robot", "without_tar
 
 
 def threat(world: World, state: TrackerState) -> Threatened:
-    """What is known to have failed, and the budgets left: an attack that was seen has spent its share."""
+    """Return the known failures and the remaining budgets: an attack that was seen has spent its share."""
     seen, team = state.attack, world.scenario
     return Threatened(seen, max(team.alpha_s - len(seen.sensing), 0), max(team.alpha_c - len(seen.links), 0))
 

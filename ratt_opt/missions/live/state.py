@@ -1,4 +1,4 @@
-"""What a tracker is told, and what it knows: plain data that pickles and becomes JSON."""
+"""Measurements and the state of a tracker: plain data that pickles and becomes JSON."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FORMAT, VERSION = "ratt-opt tracker", 3
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """What ``robot`` measured of ``target``: range [m] and bearing [rad], or what its own sensor gives.
+    """Measurement of ``target`` by ``robot``: range [m] and bearing [rad], or the values of its own sensor.
 
     ``time`` : when it was measured, on the caller's clock [s]; ``None`` is the time of the step it is given to.
     """
@@ -111,7 +111,7 @@ class TrackerState(ByValue, Shown):
 
     @property
     def belief(self) -> Belief:
-        """What is believed of the targets at ``time``."""
+        """Belief about the targets at ``time``."""
         return self.moments[-1].belief
 
     def to_dict(self) -> dict[str, Any]:

@@ -128,7 +128,7 @@ class Tracker:
 
     @property
     def beliefs(self) -> Belief:
-        """What is believed of the targets now, in the order of :attr:`targets`."""
+        """Belief about the targets now, in the order of :attr:`targets`."""
         return self.state.belief
 
     @property
@@ -290,7 +290,7 @@ class Tracker:
         faults: list[PacketError | None],
         taken: TakenIn,
     ) -> TrackerPlan:
-        """What became of each measurement; the plan itself is still to be made."""
+        """Report the fate of each measurement; the plan itself is still to be made."""
         skipped, innovations = [], []
         for given, one, fault in zip(measurements, made, faults, strict=True):
             innovation = None if isinstance(one, PacketError) else taken.innovations.get(id(one.measurement))

@@ -1,4 +1,4 @@
-"""How robots execute a control: the paper's way, turning while they drive, flying sideways, or a way of one's own."""
+"""Motions of robots: the paper's, turning while they drive, flying sideways, or one of your own."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def check_robot_motion(motion: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class TeamMotion:
-    """How each robot moves, in groups of robots that move alike: ``moves`` of the robots in ``robots``."""
+    """Motions of a team, in groups of robots that move alike: ``moves`` of the robots in ``robots``."""
 
     moves: tuple[tuple[MoveRobots, frozenset[int]], ...]
 

@@ -1,4 +1,4 @@
-"""Which robot has which sensor in a mission."""
+"""Sensors of the robots in a mission."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ COMPONENTS: dict[str, type[RangeBearing]] = {
     "range": RangeOnly,
     "bearing": BearingOnly,
 }
-"""What of a scenario's sensors is measured, by name."""
+"""Sensors that measure a part of a scenario's sensor, by name."""
 
 
 def check_sensor(sensor: object) -> None:
@@ -71,7 +71,7 @@ def sensors_of(
 
 
 def _part(own: Sensor | SensorModel, part: str | None, robot: int) -> SensorModel:
-    """What of a scenario's sensor is measured."""
+    """Select the measured part of a scenario's sensor."""
     if isinstance(own, SensorModel):
         if part is not None:
             rule = f"must be absent, or {type(own).__name__} of robots[{robot}] a range-and-bearing Sensor"

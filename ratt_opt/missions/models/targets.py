@@ -1,4 +1,4 @@
-"""How targets move: a known velocity (the paper's), a constant velocity or a coordinated turn that is estimated too."""
+"""Motions of targets: a known velocity (the paper's), a constant velocity or a coordinated turn, both estimated."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ __all__ = [
 VELOCITY_STD = 1.0
 """Standard deviation per axis of the first belief of a velocity [m/s], if a target does not say (``velocity_std``)."""
 TURN_STD = 0.05
-"""The same of its turn rate [rad/s]: half the largest of the paper's."""
+"""Standard deviation of the first belief of a turn rate [rad/s], if a target does not say: half the paper's largest."""
 TURN_NOISE = 0.01
 """Standard deviation by which a turn rate drifts in one second [rad/s]."""
 ON_GRID = 1e-9
@@ -62,7 +62,7 @@ class TargetMotion(ABC):
 
     @abstractmethod
     def initial(self, scenario: Scenario) -> Belief:
-        """What a scenario believes of its targets, as states."""
+        """Return a scenario's initial belief about its targets, as states."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

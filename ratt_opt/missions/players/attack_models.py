@@ -1,4 +1,4 @@
-"""How long attacks last: renewed in every step, held for some steps, or failures that stay and add up."""
+"""Duration of attacks: renewed in every step, held for some steps, or failures that stay and add up."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class AttackModel(ABC):
 
     @abstractmethod
     def threatened(self, step: int, before: Attack, scenario: Scenario) -> Threatened:
-        """What the team knows to have failed when it plans, and the budgets it plans against."""
+        """Return the known failures at planning time, and the budgets to plan against."""
 
     def strikes(self, threatened: Threatened, links: int, rng: np.random.Generator) -> tuple[int, int]:  # noqa: ARG002
-        """How many sensors and of how many ``links`` the attacker may hit now: all that the team plans against."""
+        """Return how many sensors and how many of the ``links`` may be hit now: all that the team plans against."""
         return threatened.alpha_s, threatened.alpha_c
 
 
@@ -36,7 +36,7 @@ class RenewedAttacks(AttackModel):
     """An attack ends with its step; the next step's may use the whole budgets again (the paper's)."""
 
     def threatened(self, step: int, before: Attack, scenario: Scenario) -> Threatened:  # noqa: ARG002
-        """Nothing has failed, and everything may."""
+        """Return no failure and the whole budgets."""
         return Threatened(Attack(), scenario.alpha_s, scenario.alpha_c)
 
 
@@ -75,7 +75,7 @@ class PermanentFailures(AttackModel):
                 raise InputError(name, "must be a probability in [0, 1]", getattr(self, name))
 
     def threatened(self, step: int, before: Attack, scenario: Scenario) -> Threatened:  # noqa: ARG002
-        """What has failed, and the rest of the budgets."""
+        """Return the failures so far and the rest of the budgets."""
         left = max(scenario.alpha_s - len(before.sensing), 0), max(scenario.alpha_c - len(before.links), 0)
         return Threatened(before, *left)
 

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["ATTACKERS", "attack_of", "attacker_called"]
 
 NODES = 500_000
-"""Of a worst case on a graph that is not complete, beyond what is exact at once: some ten seconds a step. A limit of
-seconds would make missions depend on the machine."""
+"""Nodes of a worst case on a graph that is not complete, beyond what is exact at once: some ten seconds a step.
+A limit of seconds would make missions depend on the machine."""
 
 
 def _worst(problem: Problem, plan: IntArray) -> AttackResult:

@@ -113,7 +113,7 @@ def planner_called(planner: str | Planner) -> Planner:
 
 
 def planned_with(planner: Planner, problem: Problem, world: PlannerWorld | None) -> Planned:
-    """What a planner returns, called as ``f(problem)`` or, if it takes one, with the world.
+    """Call a planner as ``f(problem)`` or, if it takes one, with the world.
 
     InputError : it needs a world, and the problem comes from none.
     """
@@ -126,7 +126,7 @@ def planned_with(planner: Planner, problem: Problem, world: PlannerWorld | None)
 
 
 def sees_world(planner: Planner) -> bool:
-    """Whether a planner is ``f(problem, world)``: it has a parameter of that name, or must be given a second one."""
+    """Tell whether a planner is ``f(problem, world)``: it has a parameter of that name, or requires a second one."""
     try:
         taken = list(signature(planner).parameters.values())
     except (TypeError, ValueError):  # compiled, or odd

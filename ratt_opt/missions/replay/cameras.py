@@ -1,4 +1,4 @@
-"""Which robots' cameras run when only some may: the planners' ideas under a cardinality limit."""
+"""Choice of robots whose cameras run when only some may: the planners' ideas under a cardinality limit."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ class Replay(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReplaySettings:
-    """What a replay is.
+    """Settings of a replay.
 
     ``start`` : seconds since all poses have begun; ``period`` : of a step [s], in which every running camera gives its
     last sighting of each landmark (successive ones have correlated errors); ``cameras`` : how many may run;
@@ -209,7 +209,7 @@ class _Replay:
         return self.world.problem(objective, owner, poses, self.threatened)
 
     def attacked(self, step: int, problem: Problem, plan: IntArray, players: tuple[Attacker, AttackModel]) -> None:
-        """What stood before, and what the attacker adds."""
+        """Combine the failures in force with the attacker's new ones."""
         attacker, model = players
         rng = np.random.default_rng([self.settings.seed, step])
         sensors, links = model.strikes(self.threatened, len(problem.communication.links), rng)

@@ -110,7 +110,7 @@ def made(kind: str, given: Mapping[str, Any]) -> Sensor | SensorModel:
 
 
 def _offered() -> tuple[EntryPoint, ...]:
-    """What installed packages offer; looked up once for each search path."""
+    """Return the sensors that installed packages offer; looked up once for each search path."""
     return _offered_on(tuple(sys.path))
 
 
@@ -149,7 +149,7 @@ def _names(found: type[SensorModel]) -> list[str]:
 
 
 def _document(sensor: Sensor | SensorModel) -> dict[str, Any]:
-    """What a file holds of a sensor."""
+    """Return the entry of a sensor in a file."""
     kind = kind_of(sensor)
     if isinstance(sensor, Sensor):
         own = type(sensor).model_fields if kind else Sensor.model_fields  # a subclass without a name is saved as these
@@ -192,7 +192,7 @@ def _read(value: object) -> Sensor | SensorModel:
 
 
 class AnySensor:
-    """How records read, write and describe a field that holds a sensor of any class."""
+    """Field of a record that holds a sensor of any class: its reading, writing and schema."""
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: object, handler: object) -> core_schema.CoreSchema:

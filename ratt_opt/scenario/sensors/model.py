@@ -1,4 +1,4 @@
-"""What a robot's sensor measures of a target: the base class to subclass."""
+"""Base class of sensors: a subclass states the measurement of a target by a robot."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ POSE_STEP = 1e-5
 
 
 POINT_STEP, BEND_STEP = 6e-6, 1e-3
-"""Of a point, per metre of its distance from the origin and at least per metre: the cube root of a rounding, at which
-central differences err by about 1e-10; of these the wider step makes second derivatives good to 1e-6."""
+"""Steps of differences of a point, per metre of its distance from the origin and at least per metre.
+The first is the cube root of a rounding, at which central differences err by about 1e-10. The second, wider one makes
+second derivatives of these good to 1e-6."""
 
 
 class SensorModel(ABC):
