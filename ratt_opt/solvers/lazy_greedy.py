@@ -110,7 +110,7 @@ class LazyGreedy:
         return len(elements) == 1 or bool((self._information[elements] == self._information[elements[0]]).all())
 
     def _plainly(self, elements: IntArray) -> int:
-        """As the plain loop would compare them."""
+        """Choose among tied elements as the plain loop would."""
         values = self._objective.extensions(np.array(self._chosen, dtype=np.int64), elements)
         return int(elements[np.argmax(values)])
 

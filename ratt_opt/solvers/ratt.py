@@ -30,8 +30,9 @@ PLAIN_WORK = 200_000
 """Criteria of single targets that take some milliseconds in the plain loop; beyond, lazy evaluation is faster."""
 
 SIZE_SHARE, QUICK, HALF, AT_ONCE = 0.1, 2.0, 0.5, 0.3
-"""Of the seconds left for ``n_max``. What takes no longer than ``QUICK`` seconds is the same within any limit of
-twice as many, and what takes no longer than ``AT_ONCE`` within any: RATT's plan then does not depend on it."""
+"""Limits of the seconds for ``n_max``: a share of the remaining ones, and seconds within which it is not cut short.
+What takes no longer than ``QUICK`` seconds is the same within any limit of twice as many, and what takes no longer than
+``AT_ONCE`` within any: RATT's plan then does not depend on it."""
 
 
 @Step("the smallest largest group")
@@ -85,9 +86,9 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
 
 FIRST_SHARE, SHORT_SHARE = 0.02, 0.1
-"""Of a search's time for ``n_max``, and if that is less than two seconds: on networks of 30 robots a tenth of 120
-seconds went there and no plan was better for it; of one second nothing was left. If no time is set nothing is cut
-short."""
+"""Share of a search's time for ``n_max``, and the share if that is less than two seconds.
+On networks of 30 robots a tenth of 120 seconds went there and no plan was better for it; of one second nothing was
+left. If no time is set nothing is cut short."""
 
 
 def alpha_cs_in_share(problem: Problem, budget: Budget) -> int:
@@ -147,7 +148,7 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
 def _lazy_greedy(
     problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray, budget: Budget
 ) -> int:
-    """The same choices with few evaluations; the number is that of the algorithm as it stands."""
+    """Make the greedy choices with few evaluations; the returned number is that of the plain algorithm."""
     is_open = np.zeros(objective.n, dtype=np.bool_)
     is_open[candidates] = True
     greedy, evaluations = LazyGreedy(objective, is_open), -len(candidates)

@@ -45,9 +45,9 @@ PROOF_SHARE, PROOF_SHARE_OF_ALL = 0.4, 0.05
 """Share of the remaining time for proving the worst case of the best plan; less if all attacks that matter are
 known."""
 BEST_SHARE = 0.7
-"""Of that, for the best plan; the rest is for an attack on RATT's plan that leaves it no more."""
+"""Share of the proof's time for the best plan; the rest is for an attack on RATT's plan that leaves it no more."""
 PROOF_NODES = 500_000
-"""Of one exact attack: nearly all on teams of up to 30 robots close in less."""
+"""Nodes of one exact attack: nearly all on teams of up to 30 robots close in less."""
 PATIENCE = 200
 """Kicks in vain after which a search without a limit of time ends: teams of six robots take a tenth of a second."""
 
@@ -167,7 +167,7 @@ def _prove_last(incumbent: Incumbent, starts: list[IntArray], own: Budget) -> No
 
 
 def _can_be_worse(incumbent: Incumbent, starts: list[IntArray]) -> bool:
-    """Whether less is proved of the plan in hand than one of those it began with may keep."""
+    """Test whether less is proved of the plan in hand than one of its starts may be worth."""
     most = max(incumbent.pool.plan_value(plan) for plan in starts)
     return incumbent.proved.lower < most - incumbent.problem.objective.rounding
 

@@ -1,4 +1,4 @@
-"""What the planners that bound the optimum return."""
+"""Results of the planners that bound the optimum."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ class MaxMinResult(ByValue, Shown):
     worst_case: AttackResult | None = None
     """The attack on ``elements`` that ``lower`` rests on; ``None`` if it was enumerated."""
     proof: UpperProof | None = None
-    """What ``upper`` rests on; ``None`` if it was enumerated."""
+    """Derivation of ``upper``; ``None`` if it was enumerated."""
     relies_on: tuple[str, ...] = ()
     """Properties of a set function of your own that the claim takes from its word, such as ``"submodular"``."""
     unattacked: float | None = None
-    """What the plan is worth when nobody attacks: among plans of equal worst case one is preferred that is worth more.
+    """Value of the plan without attack: among plans of equal worst case, one with a higher value is preferred.
     ``None`` if plans were enumerated, and for set functions that are no information criterion."""
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:

@@ -66,7 +66,7 @@ class Climbing:
         return self._worth_of([elements])[0]
 
     def value(self, elements: IntArray) -> float:
-        """What the known attacks leave of a plan."""
+        """Return the value of a plan under the worst of the known attacks."""
         return min(self._team_values(elements))
 
     def _best_exchange(self, current: IntArray, robot: int, value: float) -> tuple[int, float] | None:
@@ -98,7 +98,7 @@ class Climbing:
         return values
 
     def _team_values(self, elements: IntArray) -> list[float]:
-        """What each of the known attacks leaves."""
+        """Return the value of a plan under each of the known attacks."""
         groups = [[_elements(elements, group) for group in parts] for parts in self._attacks.known.values()]
         flat = iter(self._worth_of([group for parts in groups for group in parts]))
         return [max(next(flat) for _ in parts) for parts in groups]

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 __all__ = ["ATTACK_SHARE", "PlanAttacks"]
 
 ATTACK_SHARE = 0.2
-"""Of the seconds and values left, for the first attack on a plan. Not tuned."""
+"""Share of the remaining seconds and values for the first attack on a plan. Not tuned."""
 FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
-"""At least this many seconds for the first attack, if that is no more than this share of those left: with a fifth of
-one second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
+"""Fewest seconds of the first attack, if they are at most this share of the remaining ones.
+With a fifth of one second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
 
 
 class PlanAttacks:
@@ -40,7 +40,7 @@ class PlanAttacks:
         self.known: dict[Attack, list[frozenset[int]]] = {}
         self._first: bytes | None = None
         self._begun: dict[bytes, AttackMemory] = {}
-        """Of attacks that can go on: on the first plan, and on the last other one; some megabytes each."""
+        """Memories of attacks that can go on: on the first plan, and on the last other one; some megabytes each."""
         self._cut_short: set[bytes] = set()
         """Plans whose last attack a share of the budget ended."""
 
@@ -48,7 +48,7 @@ class PlanAttacks:
         """Attack the plan that all others are compared with."""
         self._first = elements.tobytes()
         seconds = min(FIRST_SECONDS, SHORT_SHARE * self._budget.seconds_left)
-        # Of evaluations it does not need what a short time may not do for: a table takes a known number of them.
+        # If evaluations are limited, the attack may take most of them: a table takes a known number.
         share = ATTACK_SHARE if np.isinf(self._budget.evaluations_left) else SHORT_SHARE
         return self.attack(elements, self._budget.part(share, at_least=seconds))
 

@@ -30,7 +30,7 @@ __all__ = ["guarantee_bound", "pooling_bound"]
 
 
 def pooling_bound(problem: Problem, attacks: PlanAttacks, budget: Budget) -> float:
-    """What the worst attack found leaves of robots that hold all their elements."""
+    """Bound by the worst attack found on robots that hold all their elements."""
     everyone = np.arange(problem.n_robots)
     team = replace(problem, objective=Pooled(problem, _singles(attacks.problem)), robot=everyone)
     worst = strongest_attack(team, everyone, budget=budget.part(ATTACK_SHARE)).attack

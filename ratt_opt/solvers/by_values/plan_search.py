@@ -236,7 +236,7 @@ class PlanSearch:
         return single
 
     def result(self, stop: Stop) -> MaxMinResult:
-        """What is known."""
+        """Return the result so far."""
         attacks = self._attacks
         return MaxMinResult(
             elements=readonly(np.asarray(attacks.elements)),

@@ -34,8 +34,11 @@ OPEN = -1
 
 
 class Pooled(SetFunction):
-    """Of robots: no plan's elements of them are worth more. The value of all their elements; of a submodular function
-    also the sum of the largest individual values, if that is less."""
+    """Upper bound, for a set of robots, on the value of any plan's elements of them.
+
+    It is the value of all their elements; of a submodular function also the sum of the largest individual values, if
+    that is less.
+    """
 
     __slots__ = ("_best", "_f", "_owners")
 
@@ -69,7 +72,7 @@ class PlanTree:
         self._last: list[tuple[float, int, IntArray]] = []
         self._count, self._settled = 0, -np.inf
         self._attacked: dict[bytes, float] = {}
-        """What attacks leave of the plans that were attacked here."""
+        """Values of the attacked plans under attack."""
 
     @property
     def upper(self) -> float:
@@ -78,7 +81,7 @@ class PlanTree:
 
     @property
     def is_finished(self) -> bool:
-        """Whether dividing can prove no more: what is left are plans of which attacks can prove no more."""
+        """True if dividing can prove no more: the plans left are those of which attacks prove no more."""
         return self._settled >= self._largest_left()
 
     def _largest_left(self) -> float:
@@ -175,7 +178,7 @@ class PlanTree:
         return max(self._group_value(partial, group) for group in groups)
 
     def _group_value(self, partial: IntArray, group: Iterable[int]) -> float:
-        """Of a group whose open robots hold all their elements."""
+        """Bound the value of a group: its open robots hold all their elements."""
         held: set[int] = set()
         for i in group:
             held.update(self._elements_of(i).tolist() if partial[i] == OPEN else (int(partial[i]),))

@@ -1,4 +1,4 @@
-"""What searches by values rely on: non-decreasing functions, and submodular ones if they say so.
+"""Assumptions of searches by values: non-decreasing functions, and submodular ones if they say so.
 
 Small functions are checked. What is relied upon stands in the result. If a search meets sets that break it, an error
 shows them.

@@ -69,7 +69,7 @@ class RowSearch:
 
     @property
     def relies_on_caps(self) -> bool:
-        """Whether groups of some outcomes were left out, as they are worth no more than the best plan."""
+        """True if groups of some outcomes were left out, as they are worth no more than the best plan."""
         return not self._only_blinds
 
     def run(self, part: Budget) -> None:

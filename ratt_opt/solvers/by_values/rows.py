@@ -111,7 +111,7 @@ class RowBound:
 
     @property
     def has_room(self) -> bool:
-        """Whether one more outcome may have columns."""
+        """True if one more outcome may have columns."""
         return (len(self._outcomes) + 1) * self._parts.n_parts <= self._params.most_values
 
     def add_outcome(self, left: FloatArray) -> bool:

@@ -57,7 +57,7 @@ def search_any(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: in
 
 
 def _enumerated(problem: Problem, budget: Budget) -> MaxMinResult | None:
-    """What the enumeration of plans and outcomes says within its share; ``None`` if there are too many."""
+    """Enumerate plans and outcomes within a share of the budget; ``None`` if there are too many."""
     if problem.threat.links_alike and count_outcomes(problem.threat, enough=MOST_OUTCOMES) > MOST_OUTCOMES:
         return None
     try:

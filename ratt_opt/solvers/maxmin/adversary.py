@@ -113,8 +113,9 @@ def _at_their_best(problem: Problem) -> Team | None:
 SEARCHED_BY_SIZE = 12
 """Larger teams with all links alike are attacked by exchanges first: fast and hardly ever wrong."""
 QUICK_SHARE = 0.05
-"""Of the time left for one quick attack, and for exchanges next to known outcomes before: without a limit those on 100
-robots took up to two seconds each, and these all of 50 on 1,000; an exchange takes a third of one."""
+"""Share of the remaining time for one quick attack, and for exchanges next to known outcomes before it.
+Without a limit quick attacks on 100 robots took up to two seconds each, and exchanges all of 50 on 1,000; an exchange
+takes a third of one."""
 NEAR = 4
 """Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew. Not
 tuned."""
@@ -144,7 +145,7 @@ class Adversary:
 
     @property
     def is_exact_cheaply(self) -> bool:
-        """Whether an exact attack costs little, and says more than the known outcomes do."""
+        """True if an exact attack costs little, and can find more than the known outcomes."""
         return self.problem.n_robots <= SEARCHED_BY_SIZE and not self.pool.complete
 
     def learn(self, plan: IntArray) -> bool:
@@ -200,7 +201,7 @@ class Adversary:
         return len(self.pool) > known
 
     def learn_relaxed(self, of_robot: FloatArray) -> bool:
-        """The same for a relaxed plan, as if it were one: its robots contribute ``of_robot`` (N, M, d, d)."""
+        """Learn outcomes from a relaxed plan as if it were one: its robots contribute ``of_robot`` (N, M, d, d)."""
         known = len(self.pool)
         owners = np.arange(self.problem.n_robots)
         objective = self.pool.objective.with_information(of_robot)
@@ -226,7 +227,7 @@ class Adversary:
         return result
 
     def glance(self, plan: IntArray, budget: Budget) -> AttackResult:
-        """What is known of a plan at once, with the known attack that hurts it most, or earlier exact ones.
+        """Evaluate a plan quickly: by the known attack that hurts it most, or earlier exact ones.
 
         An attack of its own takes half a second if a thousand robots lose hundreds of thousands of links.
         """
@@ -239,7 +240,7 @@ class Adversary:
         return strongest_attack(self.problem, plan, time_limit=0, budget=budget, memory=memory)
 
     def _memory(self, plan: IntArray) -> AttackMemory:
-        """Of earlier exact attacks on the plan, if it is one of the last few attacked."""
+        """Return the memory of earlier exact attacks on the plan, if it is one of the last few attacked."""
         memory = self._memories.pop(plan.tobytes(), None) or AttackMemory()
         self._memories[plan.tobytes()] = memory
         if len(self._memories) > REMEMBERED:

@@ -81,7 +81,7 @@ class Candidates:
         return self._top()[3]
 
     def is_better(self, plan: IntArray) -> bool:
-        """Whether a plan is worth more than the best one under the known outcomes, by more than rounding."""
+        """Test whether a plan beats the best one under the known outcomes, by more than rounding."""
         return self.pool.plan_value(plan) > self.level + self.pool.objective.least_improvement(self.level)
 
     def meet(self, plan: IntArray) -> bool:

@@ -60,7 +60,7 @@ class WinnerDivision:
             self.frontier.close(leaf)
 
     def undecided(self, node: TreeNode, of_robot: FloatArray, level: float) -> int | None:
-        """Of the outcomes of undecided winner and smallest value below ``level`` one that the fewest groups may win."""
+        """Choose an outcome of undecided winner and value below ``level``, one that the fewest groups may win."""
         values = self.pool.group_values(of_robot)
         teams = self.pool.outcome_values(values)
         rising = np.argsort(teams, kind="stable")

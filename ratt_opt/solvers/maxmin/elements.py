@@ -107,7 +107,7 @@ class ElementsRecord(Structure):
 
 
 class PackedElements:
-    """What elements tell about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
+    """Information of elements about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
     ``criterion`` : the code of trace or log-det; ``weights``, ``baseline`` : (M,) and the weighted criterion of the
     prior information ``prior`` (M, T); ``information`` : (E, M, T); ``sees`` : (E, M) whether there is information
@@ -146,7 +146,7 @@ class PackedElements:
 
     @classmethod
     def of(cls, objective: InformationObjective, information: FloatArray, sees: BoolArray) -> PackedElements:
-        """Those of a criterion, with ``information`` (E, M, d, d)."""
+        """Pack the elements of a criterion, with ``information`` (E, M, d, d)."""
         prior = objective.prior_information
         assert objective.compiled_code is not None
         return cls(

@@ -61,11 +61,11 @@ class ClosingRule:
         return (self.level + self._rounding) / (1 - min(self.gap, WIDEST_GAP))
 
     def closes(self, bound: float) -> bool:
-        """Whether a bound is low enough."""
+        """Tell whether a bound is low enough to close a node."""
         return bool(np.isfinite(bound)) and self.missing(bound) >= 0
 
     def missing(self, bound: float) -> float:
-        """What has to be added to a bound until it no longer closes; negative if it does not close."""
+        """Return the amount by which a bound may rise and still close; negative if it does not close."""
         return self.level + self.gap * abs(bound) + self._rounding - bound
 
 
@@ -99,7 +99,7 @@ class Frontier:
 
     @property
     def is_closed(self) -> bool:
-        """Whether no open node is left that does not close."""
+        """True if every open node closes."""
         return all(self.rule.closes(node.bound) for node in self._largest())
 
     def _largest(self) -> Iterator[TreeNode]:
@@ -206,7 +206,7 @@ class Backjumps:
             node = parent
 
     def _closes_wider(self, split: Split, parent: TreeNode, node: TreeNode) -> bool:
-        """Whether a closed child stays so with all elements of the robot that divides its parent; then it has them.
+        """Try to close a child for all elements of the robot that divides its parent; if it stays closed, it gets them.
 
         Tried only if its siblings are open, or rely on more than it does.
         """

@@ -77,20 +77,21 @@ FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
 """Nodes, and share of the time left, spent at once on attacks that bound the first plan, and the best one, from below.
 Nearly all attacks on teams of up to 30 robots close in less."""
 NETWORK_SHARE = 0.02
-"""The same share on networks, if attacks go on later where they ended. With a tenth (and 500,000 nodes) 20 of 120
-seconds went into two such attacks at 30 robots of hubs, with a third blinded and 30 % of the links cut."""
+"""Share of the time for a first attack on networks, if attacks go on later where they ended.
+With a tenth (and 500,000 nodes) 20 of 120 seconds went into two such attacks at 30 robots of hubs, with a third blinded
+and 30 % of the links cut."""
 FIRST_SECONDS, SHORT_SHARE = 1.0, 0.95
-"""At least this many seconds, if that is no more than this share of those left: a tenth of a second proves little, and
-a search of one second mostly serves for what is proved of RATT's plan."""
+"""Fewest seconds of the first attack, if they are at most this share of the remaining ones.
+A tenth of a second proves little, and a search of one second mostly serves for what is proved of RATT's plan."""
 IMPROVED_SHARE = 0.1
-"""Of the time left for the local search from one plan, as at 100 robots each attack on the way takes up to two seconds,
-and for attacks on one plan that is offered."""
+"""Share of the remaining time for the local search from one plan, and for attacks on one plan that is offered.
+At 100 robots each attack on the way takes up to two seconds."""
 RIVAL_SHARE = 0.5
-"""Of the time left, once, for a second attack on a plan of which more is proved so far than of the best one."""
+"""Share of the remaining time, once, for a second attack on a plan that has a higher proved value than the best one."""
 RACE_SHARE = 0.2
-"""The same on networks for the first plan, and for the best one: of which more is proved by then gets the rest. On hubs
-of 30 robots, a third blinded and 30 % of the links cut, 44 seconds proved 397.1 of the first one's 404.6, and 393.5 of
-the best one's 405.7, of which 110 seconds proved no more."""
+"""Share of the remaining time on networks for the first plan, and for the best one; that of higher proved value
+gets the rest. On hubs of 30 robots, a third blinded and 30 % of the links cut, 44 seconds proved 397.1 of the first
+one's 404.6, and 393.5 of the best one's 405.7, of which 110 seconds proved no more."""
 LEFT_EARLY, EARLY = 0.05, 0.5
 """Share of what is open of the best plan that an attack on a network has to take off for another plan to be looked for
 at once, and of the time in which that is done: its first stages find most such attacks, its proof takes the time."""
@@ -109,7 +110,7 @@ class Incumbent:
 
     @property
     def is_proved(self) -> bool:
-        """Whether the best plan's value is proved."""
+        """True if the best plan's value is proved."""
         level = self.candidates.level
         return self.proved.lower >= level - PROVED * abs(level) - self.problem.objective.rounding
 
@@ -205,7 +206,7 @@ class Incumbent:
         yield best, 1.0
 
     def _aim(self) -> float:
-        """What an attack has to leave the best plan at most for another plan to be looked for before it is proved."""
+        """Return the value of the best plan under attack at which a search for other plans comes before its proof."""
         limit, level = self.budget.time_limit, self.candidates.level
         if not self.adversary.on_network or limit is None or self.budget.elapsed > EARLY * limit:
             return -np.inf
@@ -226,7 +227,7 @@ class Incumbent:
 
 
 TIES_SHARE, TIES_NODES = 0.1, 100_000
-"""Of the time left, and nodes of each attack on a plan that is worth more."""
+"""Share of the remaining time for breaking ties, and nodes of each attack on a plan that is worth more."""
 NO_MORE = 1e-9
 """Relative difference of values without attack that counts as none."""
 TIES_ROUNDS = 10

@@ -1,4 +1,4 @@
-"""What every tree of a search shares: outcomes, plans, cuts, proofs of weak groups and tables of small ones."""
+"""Shared state of every tree of a search: outcomes, plans, cuts, proofs of weak groups and tables of small ones."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["Known"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Known:
-    """What is known of a problem whatever tree is searched: outcomes, plans, cuts, tables; and what closes a node.
+    """Shared state of all trees on a problem: outcomes, plans, cuts, tables; and the rule that closes a node.
 
     ``rows_from`` : nodes after which cuts become rows of inequalities target by target
     """
@@ -41,7 +41,7 @@ class Known:
 
     @classmethod
     def of(cls, task: Task, incumbent: Incumbent, gap: float, *, by_rows: bool = True) -> Known:
-        """What is known before the first tree; ``gap`` : relative width that closes a node.
+        """Build the state before the first tree; ``gap`` : relative width that closes a node.
 
         ``by_rows`` : whether cuts may become rows of inequalities target by target, if that is worth it
         """

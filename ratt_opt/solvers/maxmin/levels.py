@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
 
 SHARES = (0.0, 0.25, 0.5, 0.75)
-"""Of what is open, how far above the best plan the levels are that are tried in turn."""
+"""Levels tried in turn, as shares of the open bracket above the best plan."""
 WALK_KICKS, WALK_SHARE = 50, 0.05
 """Kicks, and share of the time left, in which a better plan is looked for once the best plan's level took too long."""
 FIRST_RUNS, GROWTH = 20, 2
@@ -37,10 +37,10 @@ FIRST_RUNS, GROWTH = 20, 2
 
 
 class Outcome(IntEnum):
-    """How a run of the search in depth ends."""
+    """End of a run of the search in depth."""
 
     PROVED = 0
-    """Nothing is left."""
+    """No node is left."""
     SPENT = 1
     """Its nodes are spent."""
     PLAN = 2
@@ -68,7 +68,7 @@ class LevelSearch(ABC):
     @property
     @abstractmethod
     def is_long(self) -> bool:
-        """Whether its record is as long as memory should hold."""
+        """True if the record is as long as memory should hold."""
 
     def run(self, turns: Turns, runs: int) -> Ending:
         """Search until nothing is open, the runs are spent, or it is time to stop."""
@@ -100,10 +100,10 @@ class LevelSearch(ABC):
         """(N,) the plan that is left, of the undominated elements."""
 
     def _begin(self, turns: Turns) -> None:  # noqa: B027  (a search may have nothing to do then; so may those below)
-        """What is to be done before the first run."""
+        """Prepare the first run."""
 
     def _learn(self, turns: Turns) -> None:  # noqa: B027
-        """What is to be done after a run whose nodes were spent."""
+        """Learn from a run whose nodes were spent."""
 
     def _heed(self, plan: IntArray, outcome: int) -> None:  # noqa: B027
         """Take note that a known outcome leaves a plan no more than the level."""

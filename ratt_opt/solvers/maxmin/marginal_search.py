@@ -117,7 +117,7 @@ class MarginalLevelSearch(LevelSearch):
 
     @property
     def is_long(self) -> bool:
-        """Whether its record is as long as memory should hold."""
+        """True if the record is as long as memory should hold."""
         return len(self.record) >= MOST_RECORDED
 
     @property

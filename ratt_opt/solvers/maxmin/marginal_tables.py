@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["BRANCHED", "MOST_ROBOTS", "Attacks", "Choosers", "Gains", "Path"]
 
 BRANCHED = -1
-"""In a record: the node is divided by the elements of the next robot. Any other number is the attack of a dead end."""
+"""Mark of a node that is divided by the elements of the next robot. Any other number is the attack of a dead end."""
 MOST_ROBOTS = 64
 """Robots that masks hold."""
 
@@ -102,7 +102,7 @@ class PathRecord(Structure):
 
 
 class Path:
-    """Where the search is: ``chosen`` (N,) the elements of the robots that have chosen, and what ended each node."""
+    """Path of the search: ``chosen`` (N,) the elements of the robots that have chosen, and the end of each node."""
 
     def __init__(self, choosers: Choosers, room: int) -> None:
         self.chosen, targets = np.zeros(choosers.robots, np.int64), choosers.elements.targets
@@ -132,7 +132,7 @@ class GainsRecord(Structure):
 
 
 class Gains:
-    """What is known of each target beside the sets of its seers that came last, ``sets`` of them."""
+    """Marginals of each target beside the sets of its seers that came last, ``sets`` of them."""
 
     def __init__(self, elements: PackedElements, sets: int) -> None:
         shape = elements.targets, sets

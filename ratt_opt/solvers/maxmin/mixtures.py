@@ -1,4 +1,4 @@
-"""What mixtures of a robot's elements cost or gain, and how its elements are divided.
+"""Losses and gains of mixtures of a robot's elements, and the division of its elements.
 
 A relaxed plan mixes elements. At its level ``t`` all cuts with a multiplier are tight, and a robot that takes one
 element ``e`` of its mixture while the others do not adapt lowers cut ``k`` by ``sum_e' z_e' s_ke' - s_ke``. (The

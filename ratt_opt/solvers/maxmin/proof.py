@@ -67,7 +67,7 @@ class TangentCut(ByValue):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Cover(ByValue):
-    """What one attack cannot afford to leave; ``covers/pool.py`` derives what it says of plans.
+    """Groups that an attack on links leaves, and elements left out; ``covers/pool.py`` derives a condition on plans.
 
     ``attack`` : on links only; ``left_out`` : elements, ascending; ``points`` : for each group that the attack leaves,
     by lowest robot, the posterior information (M, d, d) where its tangent touches
@@ -148,7 +148,7 @@ class UpperProof(ByValue):
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """What a node was divided by: a robot's elements, or the winner of an outcome.
+    """Division of a node: by a robot's elements, or by the winner of an outcome.
 
     ``parts`` : (elements or robots of the winning group, node below)
     """
@@ -158,7 +158,7 @@ class Split:
     parts: tuple[tuple[tuple[int, ...], TreeNode], ...]
 
     def divides(self, robot: int) -> bool:
-        """Whether it divides the elements of this robot."""
+        """Tell whether it divides the elements of this robot."""
         return not self.by_winner and self.subject == robot
 
 

@@ -45,7 +45,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RelaxedPlan:
-    """What the solver claims: ``selection`` (E,) weights of elements, ``duals`` >= 0 weights of ``cuts``."""
+    """Solution claimed by the solver: ``selection`` (E,) weights of elements, ``duals`` >= 0 weights of ``cuts``."""
 
     selection: FloatArray
     cuts: IntArray
@@ -150,7 +150,7 @@ class CutRounds:
 
     @property
     def begins_with_rows(self) -> bool:
-        """Whether rows are for the first nodes already."""
+        """True if rows are used from the first nodes on."""
         return self._rows_from == 0
 
     def use(self, k: int) -> None:
@@ -207,7 +207,7 @@ class CutRounds:
     def _separate_by_rows(
         self, rows: RowSeparation, node: TreeNode, selection: FloatArray, at: tuple[FloatArray, float]
     ) -> bool:
-        """The same by rows; ``at`` : information of each robot (N, M, d, d), and the level.
+        """Separate by rows; ``at`` : information of each robot (N, M, d, d), and the level.
 
         Rows are taken between the relaxed plan and a mean of those before, if that cuts it off.
         """

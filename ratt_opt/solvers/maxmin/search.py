@@ -77,7 +77,7 @@ class BranchAndBound:
         return Stop.GAP
 
     def _is_finished(self) -> bool:
-        """Whether every open node closes, and everything that was closed still does."""
+        """Test whether every open node closes, and everything that was closed still does."""
         for outcome in self.winners.reconsider():
             self.winners.reopen(outcome, self.root, self.frontier)
         return self.frontier.is_closed and not self.frontier.reopen()

@@ -34,7 +34,7 @@ WHOLE, PART = 600_000, 60_000
 """Criteria of single targets that list a group's elements once and for all, and those left at a node that are listed
 there: about ten and one milliseconds for planar targets; the linear programs of a node take five to ten."""
 NOT_PLANAR = 10
-"""How many times as long a criterion takes that has no closed form."""
+"""Relative cost of a criterion that has no closed form."""
 LARGEST_GROUP = 8
 """Larger groups are never listed: when they could be, linear programs have decided them."""
 ROUNDING = 1e-11
@@ -56,7 +56,7 @@ class _Domains:
 
 
 class _Group:
-    """What one group can reach within the choices of a node."""
+    """Largest values of one group within the choices of a node."""
 
     def __init__(self, task: Task, members: tuple[int, ...]) -> None:
         self.task, self.members = task, members
@@ -103,7 +103,7 @@ class _Group:
 
 
 class SmallTables:
-    """What the pool's groups can reach, by group; numbers of choices, by what they are."""
+    """Largest values of the pool's groups, by group; numbers of choices, by what they are."""
 
     def __init__(self, task: Task, pool: OutcomePool) -> None:
         self.task, self.pool = task, pool
@@ -126,7 +126,7 @@ class SmallGroups:
         """
 
     def narrow(self, node: TreeNode, better: float) -> TreeNode | None:
-        """What remains of a node for plans above the level ``better``; ``None`` if it is divided, or closed.
+        """Narrow a node to plans above the level ``better``; ``None`` if it is divided, or closed.
 
         The node itself if all outcomes of a small team are known: linear programs over them are faster.
         """

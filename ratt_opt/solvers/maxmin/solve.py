@@ -111,7 +111,7 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     in_depth: bool = True,
     by_rows: bool = True,
 ) -> MaxMinResult:
-    """The same for an information criterion, in the coordinates given.
+    """Solve in the given coordinates, for an information criterion.
 
     ``in_depth`` : whether the proof may be that of a search in depth
     ``by_rows`` : whether its cuts may have inequalities of single targets in the place of tangents
@@ -140,7 +140,7 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TangentProofParams:
-    """How long a proof without inequalities of single targets is searched for.
+    """Limits of the search for a proof without inequalities of single targets.
 
     ``share`` : of the seconds left; ``nodes``, ``times`` : at most this many nodes, or times those of the first search:
     what a certificate states against the time that it takes
@@ -248,7 +248,7 @@ def _is_number(value: object) -> bool:
 
 
 FEW_PLANS, ENUMERATION_SHARE = 300_000, 0.5
-"""So few plans are evaluated one and all, if that ends in this share of the seconds left."""
+"""Enumerate if there are at most this many plans and enumeration fits in this share of the remaining time."""
 
 
 @interruptible

@@ -57,7 +57,7 @@ class TurnsUntil(Turns):
 
     @property
     def seconds_left(self) -> float:
-        """As of the turns themselves."""
+        """Seconds left to the turns themselves."""
         return self._turns.seconds_left
 
     def stop(self) -> Stop | None:

@@ -118,7 +118,7 @@ class RestartedSearch:
                 self._begin_next()
 
     def _is_given_up(self) -> bool:
-        """Whether the tree in work has taken too many nodes."""
+        """True if the current tree has taken too many nodes."""
         return self._known.incumbent.budget.nodes >= self._until
 
     def _is_nearly_done(self) -> bool:

@@ -1,4 +1,4 @@
-"""Which group of an outcome bounds the team value, and proofs that the others stay low.
+"""Winners of outcomes: the group that bounds the team value, and proofs that the others stay low.
 
 The team value is the best group's, which is not concave; a single group's is. A group that provably stays below the
 best plan can be left out: if all but one can, for every plan, the outcome's *winner* is decided for the whole search;

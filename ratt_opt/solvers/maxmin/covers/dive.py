@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["BY_COVER", "BY_SUM", "CoverSums", "Dive", "DiveProof"]
 
 BY_COVER, BY_SUM, TRIED = 0, 1, 2
-"""What forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
+"""Reason that forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
 NODE = np.dtype([(name, np.int64) for name in ("kind", "subject", "robot", "place", "next")])
 STEP = np.dtype([*((name, np.int64) for name in ("kind", "what", "robot")), ("gone", np.uint64)])
 FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
@@ -32,7 +32,7 @@ FIRST_ROOM = 64
 MOST_TRIED = 60
 """Sums that are looked at: those that were of most use lately."""
 FADING = 0.9
-"""How much of earlier use counts when the next one is found."""
+"""Weight of earlier use when a sum is used again."""
 
 
 class StackRecord(Structure):
@@ -93,7 +93,7 @@ class Record:
 
     @property
     def size(self) -> int:
-        """How many there are."""
+        """Number of entries."""
         return int(self.record.size)
 
     @property
@@ -153,7 +153,7 @@ class CoverSums:
         self.leaves.append(CoverLeaf(covers=tuple(covers.tolist()), weights=tuple(weights.tolist())))
 
     def rows(self) -> Sums:
-        """As the loops of a dive read them."""
+        """Return the sums of most use, in the form that the compiled dive reads."""
         tried = np.argsort(-self._used[: len(self.leaves)], kind="stable")[:MOST_TRIED]
         return Sums(self._elements, self._terms, tried.astype(np.int64), self._used)
 
@@ -172,7 +172,7 @@ class Dive:
 
     @property
     def is_long(self) -> bool:
-        """Whether its record is as long as memory should hold."""
+        """True if the record is as long as memory should hold."""
         return self.record.size >= MOST_RECORDED
 
     def run(self, level: float, nodes: int) -> Outcome:

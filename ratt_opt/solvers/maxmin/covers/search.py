@@ -38,13 +38,13 @@ RUN = 100
 ROUNDS_AT_ROOT, ROUNDS = 60, 4
 """Rounds of covers on one relaxed plan."""
 CLOSED = 2e-6
-"""What plans have to lack of a sum that is worth keeping."""
+"""Least shortfall of all plans for a sum that is worth keeping."""
 NEGLIGIBLE = 1e-6
 """Shares that count as none."""
 MOST_COVERS = 20_000
 """Covers that are known at once: a node looks at all of them."""
 LOWEST = -50.0
-"""Of ``v``: how far conditions may be met beyond what is asked counts no further."""
+"""Lower limit of ``v``: conditions met by more than this count no further."""
 NO_MULTIPLIER = 1e-9
 """Multipliers that count as none."""
 MOST_ROWS = 400
@@ -114,7 +114,7 @@ class CoverProgram:
         return Relaxed(answer.x[: self._n], float(answer.x[self._n]), covers, weights)
 
     def lacking(self, relaxed: Relaxed, allowed: BoolArray) -> tuple[float, FloatArray]:
-        """By how much all plans of allowed elements fail the combined condition, and what each element counts (E,)."""
+        """Return the combined condition's shortfall over all plans of allowed elements, and elements' terms (E,)."""
         if not len(relaxed.covers):
             return -np.inf, np.zeros(self._n)
         terms = relaxed.weights @ np.array([self._counted(k) for k in relaxed.covers.tolist()])
@@ -149,7 +149,7 @@ class CoverLevelSearch(LevelSearch):
 
     @property
     def is_long(self) -> bool:
-        """Whether its record is as long as memory should hold."""
+        """True if the record is as long as memory should hold."""
         return self.dive.is_long
 
     def _begin(self, turns: Turns) -> None:
@@ -176,7 +176,7 @@ class CoverLevelSearch(LevelSearch):
                 first = middle + 1
 
     def _ask(self, frame: int, turns: Turns, rounds: int) -> bool:
-        """Whether a frame is a dead end by a sum of covers, which is kept."""
+        """Decide whether a sum of covers proves a frame to be a dead end; the sum is kept."""
         allowed, pool = self.dive.allowed(frame), self._separation.pool
         for _ in range(rounds):
             if turns.stop() is not None:
@@ -230,7 +230,7 @@ class CoverSearch(SearchByLevels):
         return CoverLevelSearch(self._elements, self._separation, self._known.incumbent, self._level)
 
     def _make_room(self) -> None:
-        """Of too many covers forget the old ones, too, and the searches that know them."""
+        """Forget old covers, and the searches that know them, if there are too many."""
         if len(self._separation.pool) > MOST_COVERS:
             self._separation.pool.keep_latest(MOST_COVERS // 4)
             self._searches.clear()

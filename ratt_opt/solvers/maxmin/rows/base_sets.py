@@ -45,7 +45,7 @@ def semidefinite(information: FloatArray) -> FloatArray:
 
 
 def base_set_inequalities(task: Task, params: RowParams) -> list[Inequalities]:
-    """Those of the empty set, of single elements, and of pairs of the elements that tell most of a target."""
+    """Build inequalities of the empty set, of elements, and of pairs of those with most information on a target."""
     objective, error = task.objective, ERRORS * task.problem.evaluation_error
     if not np.isfinite(error):  # nothing is known of differences of values
         return []
@@ -69,7 +69,7 @@ def _of_target(
     params: RowParams,
     error: float,
 ) -> Inequalities:
-    """Those of one target; ``which`` : the target, and the element (E,) whose score each has."""
+    """Build the inequalities of one target; ``which`` : the target, and the element (E,) whose score each has."""
     target, first = which
     one = objective.of_target(target)
     seers = np.flatnonzero(information.any(axis=(-2, -1)))

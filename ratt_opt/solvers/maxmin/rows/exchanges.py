@@ -27,7 +27,7 @@ NO_LESS = 1e-9
 
 
 class _Rest:
-    """What the components that one attack on links leaves are worth once robots are blinded."""
+    """Values of the components that one attack on links leaves, once robots are blinded."""
 
     def __init__(self, parts: list[frozenset[int]], inequalities: InequalityPool, by_robot: FloatArray) -> None:
         self._parts = np.zeros((len(parts), len(by_robot)))

@@ -24,7 +24,7 @@ UNITS = 8 * np.finfo(np.float64).eps
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TargetInequality:
-    """How one inequality came about.
+    """Derivation of one inequality.
 
     ``point`` : (M, d, d) posterior information where the tangent of this target touches; ``lemma`` : what else it is
     """

@@ -9,7 +9,7 @@ __all__ = ["RowParams"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowParams:
-    """What is kept and tried; none of it changes what is claimed.
+    """Limits on what is kept and tried; none of them changes what is claimed.
 
     ``unseen`` : least share of pairs of an element and a target without information
     ``seen`` : targets that an element sees in the mean; of more, searches in depth meet dead ends late, and rows begin

@@ -22,7 +22,7 @@ __all__ = ["RelaxedGroups", "RowSeparation"]
 
 
 class RelaxedGroups:
-    """What known groups are worth to a relaxed plan, ``selection`` (E,), at most.
+    """Upper bounds on the values of known groups for a relaxed plan, ``selection`` (E,).
 
     ``points`` : (G, M, d, d) posterior information; ``bounds`` : (G, M) of each target by the inequalities known
     ``exact`` : (G, M) each target's concave value; ``values`` : (G,) of the rows that are lowest with new tangents
@@ -48,7 +48,7 @@ class RowSeparation:
 
     @staticmethod
     def fits(task: Task, params: RowParams | None = None) -> bool:
-        """Whether the criterion is a sum over targets of which robots see few.
+        """Tell whether the criterion is a sum over targets of which robots see few.
 
         If they see all, tangents of whole groups are as low, and cost less.
         """
@@ -66,7 +66,7 @@ class RowSeparation:
         return 0 if seen > params.seen else params.nodes
 
     def at(self, selection: FloatArray, of_robot: FloatArray) -> RelaxedGroups:
-        """What is known of a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d)."""
+        """Bound the values of groups for a relaxed plan, whose robots contribute ``of_robot`` (N, M, d, d)."""
         objective = self.task.objective
         points = self.outcomes.group_points(of_robot)
         exact = objective.target_values(points)
