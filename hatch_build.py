@@ -40,7 +40,8 @@ def system_compiler() -> list[str] | None:
 def _works(command: list[str]) -> bool:
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "probe.c"
-        source.write_text("#include <math.h>\n#include <stdlib.h>\ndouble probe(double x) { return log(x); }\n")
+        function = "double probe(double x);\ndouble probe(double x) { return log(x); }\n"
+        source.write_text(f"#include <math.h>\n#include <stdlib.h>\n{function}")
         ran = subprocess.run(_command(command, [source], Path(folder) / LIBRARY.name), capture_output=True, check=False)
         return ran.returncode == 0
 

@@ -17,7 +17,10 @@ COMPILED = """
     exchanges flow greedy group_tree groups keeping kept_links lattice layout levels marginal_dive needs outputs
     polytopes pricing sets_of_size team thresholds
 """
-HEADERS = "covers elements group_search marginals random records sets team"
+HEADERS = """
+    annealing covers elements group_search groups kept_links lattice marginals outputs planar polytopes pricing random
+    sets sets_of_size team
+"""
 TO_COMPILE = tuple(SOURCES / f"{name}.c" for name in COMPILED.split())
 """Other files in the folder are neither compiled nor counted: backups, drafts, what a merge left."""
 

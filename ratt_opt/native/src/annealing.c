@@ -3,10 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "annealing.h"
 #include "random.h"
-#include "records.h"
-#include "sets.h"
-#include "team.h"
 
 /* Bounds between the chances of a transfer, another blinded robot and two robots exchanged; the chance that a transfer
    opens a group of its own. Flat: a tenth more or less of each was not measured to matter. */
@@ -42,8 +40,7 @@ static void sense(State *s, int64_t robot, double sign, double *sums) {
 
 static void fill(State *s) {
     const Anneal *a = s->a;
-    for (int64_t g = 0; g < a->robots && !a->table; g++)
-        memcpy(s->sums + g * s->width, a->team->prior, (size_t)s->width * sizeof(double));
+    for (int64_t g = 0; g < a->robots && !a->table; g++) memcpy(s->sums + g * s->width, a->team->prior, (size_t)s->width * sizeof(double));
     s->cut = 0;
     for (int64_t i = 0; i < a->robots; i++) {
         int64_t g = a->group[i];
@@ -192,10 +189,7 @@ static void keep_better(const State *s, double energy) {
     memcpy(a->best_blind, a->blind, (size_t)a->robots);
 }
 
-/* Anneal a state that is within the budgets, in place, from step `first` to `last` of `steps`. A state that leaves less than
-   *least, the value of its largest group (groups may be disconnected: the attack leaves no more), is kept. 1 where memory
-   is short, else 0. */
-EXPORTED int anneal(const Anneal *a) {
+int anneal(const Anneal *a) {
     int64_t n = a->robots, width = a->table ? 0 : (int64_t)a->team->targets * entries_of(a->team);
     double *memory = calloc((size_t)(n * width + n + 2 * width), sizeof(double));
     int64_t *counts = calloc((size_t)(2 * n), sizeof(int64_t));

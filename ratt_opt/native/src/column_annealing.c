@@ -3,13 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "pricing.h"
 #include "random.h"
-#include "records.h"
-#include "sets.h"
-#include "team.h"
 
 enum { OUT, SENSING, BLIND };
-static const double ALONG = 0.6, SWAP = 0.4;                              /* chances that a move goes along a link, and that another robot changes too */
+static const double ALONG = 0.6, SWAP = 0.4; /* chances that a move goes along a link, and that another robot changes too */
 static const double JOIN_SENSING = 0.6, TO_BLIND = 0.3, TO_SENSING = 0.4; /* of what a robot becomes */
 static const int64_t NEVER = (int64_t)1 << 50;
 
@@ -53,7 +51,8 @@ static int propose(Group *g, int first, Move *move) {
     const Pricing *q = g->q;
     int i = (int)(uniform(&g->random) * g->n);
     int64_t degree = q->start[i + 1] - q->start[i];
-    if (g->part[i] != OUT && degree && uniform(&g->random) < ALONG) i = (int)q->robot[q->start[i] + (int64_t)(uniform(&g->random) * (double)degree)];
+    if (g->part[i] != OUT && degree && uniform(&g->random) < ALONG)
+        i = (int)q->robot[q->start[i] + (int64_t)(uniform(&g->random) * (double)degree)];
     double chance = uniform(&g->random);
     *move = (Move){i, OUT, -1, OUT};
     if (g->part[i] == OUT) {
@@ -84,9 +83,7 @@ static int stays_below(Group *g, const Move *move, int was, int other_was) {
     return 1;
 }
 
-/* Anneal a group that has the robot `first`, between two temperatures in units of duals. `best` (robots): 0 outside, 1
-   sensing, 2 blinded. Returns its reduced cost, or one that none has where there is no such group or memory is short. */
-EXPORTED int64_t anneal_column(const Pricing *q, int64_t first, int64_t moves, double hot, double cold, uint64_t *random, int8_t *best) {
+int64_t anneal_column(const Pricing *q, int64_t first, int64_t moves, double hot, double cold, uint64_t *random, int8_t *best) {
     int n = q->team->robots, width = q->team->targets * entries_of(q->team), blinded = 0;
     double *sums = malloc(2 * (size_t)width * sizeof(double));
     int8_t *part = calloc((size_t)n, 1);

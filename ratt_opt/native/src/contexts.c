@@ -2,8 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "records.h"
-#include "sets.h"
+#include "planar.h"
 
 enum { LANES = 8 }; /* targets side by side */
 
@@ -44,12 +43,9 @@ static void add(const Descent *d, const double *total, double sign, const double
 }
 
 /* By more than rounding, by which two contexts would take turns. */
-static int is_better(const Descent *d, double found) {
-    return found < d->value - fmax(d->relative * fabs(d->value), d->rounding);
-}
+static int is_better(const Descent *d, double found) { return found < d->value - fmax(d->relative * fabs(d->value), d->rounding); }
 
-/* Give each owner in turn its best option beside the others'; whether any has changed. */
-EXPORTED int descend(Descent *d) {
+int descend(Descent *d) {
     int improved = 0;
     for (int64_t i = 0; i < d->owners; i++) {
         int64_t now = d->picks[i];
@@ -65,8 +61,7 @@ EXPORTED int descend(Descent *d) {
     return improved;
 }
 
-/* Give owner i and each later one in turn the best pair of options beside the others'. */
-EXPORTED void descend_pairs(Descent *d, int64_t i) {
+void descend_pairs(Descent *d, int64_t i) {
     for (int64_t j = i + 1; j < d->owners; j++) {
         int64_t first = d->picks[i], second = d->picks[j];
         add(d, d->total, -1.0, parts_of(d, first), d->rest);
@@ -84,10 +79,8 @@ EXPORTED void descend_pairs(Descent *d, int64_t i) {
     }
 }
 
-/* sums, sizes (count, width): over owners (options, ascending), of the largest `levels - slope * own` of their options, and of
-   its absolute value; levels (count, options), slopes (count), own (options, width); `best` (width) is spare. */
-EXPORTED void sum_ceilings(int64_t count, int64_t options, int64_t width, const int64_t *owners, const double *levels,
-                           const double *slopes, const double *own, double *best, double *sums, double *sizes) {
+void sum_ceilings(int64_t count, int64_t options, int64_t width, const int64_t *owners, const double *levels, const double *slopes,
+                  const double *own, double *best, double *sums, double *sizes) {
     memset(sums, 0, (size_t)(count * width) * sizeof(double)), memset(sizes, 0, (size_t)(count * width) * sizeof(double));
     for (int64_t b = 0; b < count; b++, levels += options, sums += width, sizes += width)
         for (int64_t k = 0; k < options; k++) {

@@ -1,8 +1,7 @@
 /* Exact covers of a team by groups, within the budgets and a sum of reduced costs. */
 #include <string.h>
 
-#include "records.h"
-#include "sets.h"
+#include "groups.h"
 
 enum { FOUND = 1, NONE = 0, PAUSED = -1, NO_ROOM = -2 };
 
@@ -19,8 +18,7 @@ static int rarest(const Cover *cover, const Level *level, const uint64_t *left) 
     return pick;
 }
 
-/* Go on to the next cover; at most `steps` columns are looked at before a pause. */
-EXPORTED int next_cover(Cover *cover, int64_t steps) {
+int next_cover(Cover *cover, int64_t steps) {
     const int64_t words = cover->words;
     while (cover->depth >= 0) {
         Level *level = cover->levels + cover->depth, *next = level + 1;

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "covers.h"
-#include "team.h"
 
 static void add(int64_t width, const double *matrices, double sign, double *sums) {
     for (int64_t t = 0; t < width; t++) sums[t] += sign * matrices[t];
@@ -63,8 +62,8 @@ static double exchange(const Choices *choices, const double *strongest, const ui
 
 /* How many robots of a group to blind until it is worth at most the level: greedily, then by exchanges. More than `most`
    if that is not enough. `blinded` (robots) is set to these. */
-static int64_t blind(const Choices *choices, const double *strongest, const uint8_t *members, double level, int64_t most,
-                     uint8_t *blinded, Scratch *scratch) {
+static int64_t blind(const Choices *choices, const double *strongest, const uint8_t *members, double level, int64_t most, uint8_t *blinded,
+                     Scratch *scratch) {
     const Elements *all = &choices->all;
     int64_t robots = choices->robots, width = width_of(all), count = 0;
     memset(blinded, 0, (size_t)robots);
@@ -92,8 +91,8 @@ static int64_t blind(const Choices *choices, const double *strongest, const uint
 
 /* Add the cover of an attack: of each group that its partition leaves it keeps what may be chosen and is not blinded,
    and as much more as the level allows; what was forbidden last has the highest price. */
-static int64_t keep_more(const Choices *choices, const Ways *ways, Covers *covers, const Stack *stack, double level,
-                         int64_t partition, Scratch *scratch) {
+static int64_t keep_more(const Choices *choices, const Ways *ways, Covers *covers, const Stack *stack, double level, int64_t partition,
+                         Scratch *scratch) {
     int64_t elements = choices->all.elements, robots = choices->robots, number = covers->size++;
     const uint64_t *allowed = stack->allowed + stack->frame * robots;
     uint64_t *left_out = covers->left_out + number * robots;

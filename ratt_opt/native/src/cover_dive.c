@@ -9,7 +9,6 @@
 #include <string.h>
 
 #include "covers.h"
-#include "sets.h"
 
 enum { PROVED, SPENT, PLAN, FULL }; /* how a run ends, see levels.py */
 enum { RECENT = 100 };              /* covers by which elements are chosen */
@@ -70,8 +69,8 @@ static void cover_depends_on(const Choices *choices, const Stack *stack, const u
 }
 
 /* The same of a sum. */
-static void sum_depends_on(const Choices *choices, const Stack *stack, const double *terms, double spare, int64_t but,
-                           double *more, uint64_t *out) {
+static void sum_depends_on(const Choices *choices, const Stack *stack, const double *terms, double spare, int64_t but, double *more,
+                           uint64_t *out) {
     int64_t robots = choices->robots;
     const uint64_t *allowed = stack->allowed + stack->frame * robots;
     for (int64_t i = 0; i < robots; i++) {
@@ -188,8 +187,8 @@ static int64_t take_back(const Choices *choices, const Sums *sums, Stack *stack,
 }
 
 /* Set the elements on which a dead end of the present frame depends, by a cover or a sum. */
-static void find_conflict(const Choices *choices, const Covers *covers, const Sums *sums, const Stack *stack, int64_t kind,
-                          int64_t what, Scratch *scratch) {
+static void find_conflict(const Choices *choices, const Covers *covers, const Sums *sums, const Stack *stack, int64_t kind, int64_t what,
+                          Scratch *scratch) {
     int64_t robots = choices->robots;
     const uint64_t *allowed = stack->allowed + stack->frame * robots;
     if (kind == BY_COVER) {
@@ -205,8 +204,8 @@ static void find_conflict(const Choices *choices, const Covers *covers, const Su
 }
 
 /* Leave a dead end, and the frames before it that are dead ends for the same reason; whether all are. */
-static int leave(const Choices *choices, const Covers *covers, const Sums *sums, Stack *stack, Record *record, int64_t kind,
-                 int64_t what, Scratch *scratch) {
+static int leave(const Choices *choices, const Covers *covers, const Sums *sums, Stack *stack, Record *record, int64_t kind, int64_t what,
+                 Scratch *scratch) {
     int64_t robots = choices->robots, frame = stack->frame;
     uint64_t *conflict = scratch->conflict;
     find_conflict(choices, covers, sums, stack, kind, what, scratch);
@@ -260,10 +259,8 @@ static int fix(const Choices *choices, const Covers *covers, Stack *stack) {
     return 1;
 }
 
-/* Search on for some nodes; *outcome says how that ended. `most`: partitions that are tried at a node. 1 where memory is
-   short, else 0. */
-EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack,
-                            Record *record, double level, int64_t nodes, int64_t most, int *outcome) {
+int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Record *record, double level,
+                   int64_t nodes, int64_t most, int *outcome) {
     Scratch scratch;
     if (prepare_scratch(&scratch, choices, ways->groups)) return 1;
     *outcome = SPENT;

@@ -1,6 +1,5 @@
 /* The search by covers: conditions that every plan worth more than a level meets, and a search in depth by them. */
-#ifndef RATT_COVERS_H
-#define RATT_COVERS_H
+#pragma once
 
 #include "elements.h"
 
@@ -89,4 +88,16 @@ double keep(const Choices *choices, const uint8_t *inside, const double *price, 
 int64_t new_cover(const Choices *choices, const Ways *ways, Covers *covers, const Stack *stack, double level, int64_t most,
                   Scratch *scratch);
 
-#endif
+/* For each group lose targets until the rest is worth at most `level`; `values` (groups, targets) what it can be worth
+   for each; `price` (elements); `noise` (groups, targets) factors of the order in which targets are lost. Set: `paid`
+   (groups) the price of all elements that see a lost target, infinite if the level is not reached; `out` (groups,
+   elements) the group's other elements. 1 where memory is short, else 0. */
+EXPORTED int lose_all(const Choices *choices, int64_t groups, const uint8_t *inside, const double *price, const double *values,
+                      double level, const double *noise, uint8_t *out, double *paid);
+/* `keep` for a call from outside: *paid is the price. 1 where memory is short, else 0. */
+EXPORTED int keep_elements(const Choices *choices, const uint8_t *inside, const double *price, double level, uint8_t *kept, double *sums,
+                           double *paid);
+/* Search on for some nodes; *outcome says how that ended. `most`: partitions that are tried at a node. 1 where memory is
+   short, else 0. */
+EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Record *record,
+                            double level, int64_t nodes, int64_t most, int *outcome);

@@ -2,8 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "records.h"
-#include "sets.h"
+#include "annealing.h"
 
 static const double NEXT_TO = 0.95; /* the chance that a robot goes to the group of a neighbour; else to any */
 
@@ -37,9 +36,7 @@ static int64_t more_links(const CutAnneal *a, int64_t robot, int64_t home, int64
     return more;
 }
 
-/* Go through the moves first..last - 1 of `moves`. Groups within the size that cut less than `fewest` links are kept; returns
-   the fewest. */
-EXPORTED int64_t anneal_cut(const CutAnneal *a, int64_t first, int64_t last, int64_t moves, int64_t fewest) {
+int64_t anneal_cut(const CutAnneal *a, int64_t first, int64_t last, int64_t moves, int64_t fewest) {
     int64_t cut = links_cut(a), over = robots_too_many(a);
     for (int64_t move = first; move < last; move++) {
         int64_t i = below(a, a->robots), degree = a->start[i + 1] - a->start[i], home = a->group[i];

@@ -6,8 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "records.h"
-#include "sets.h"
+#include "sets_of_size.h"
 
 enum { REST = -1, NONE = -2 };
 enum { MOST_REMEMBERED = 8 }; /* sizes of a state that fit into one key beside the rest's two numbers, six bits each */
@@ -84,8 +83,7 @@ static void note(DisjointSets *d, const Choice *last) {
         if (at->chosen >= 0) d->best[d->found++] = at->chosen;
 }
 
-/* Go on until all is decided (1), or so many sets were looked at (0). The threshold falls to the value of what is found. */
-EXPORTED int search_disjoint(DisjointSets *d, int64_t work) {
+int search_disjoint(DisjointSets *d, int64_t work) {
     int remembers = d->classes <= MOST_REMEMBERED;
     int64_t looked = 0;
     while (d->depth >= 0) {
@@ -119,8 +117,7 @@ EXPORTED int search_disjoint(DisjointSets *d, int64_t work) {
     return 1;
 }
 
-/* The sum of the amounts (robots) of the robots in each set. */
-EXPORTED void sums_of_sets(int64_t count, const uint64_t *masks, const double *amounts, double *sums) {
+void sums_of_sets(int64_t count, const uint64_t *masks, const double *amounts, double *sums) {
     for (int64_t k = 0; k < count; k++) {
         sums[k] = 0.0;
         for (uint64_t rest = masks[k]; rest; rest &= rest - 1) sums[k] += amounts[lowest(rest)];

@@ -1,5 +1,5 @@
 /* Which elements tell at least as much as others, as far as floats can tell. */
-#include "sets.h"
+#include "planar.h"
 
 enum { NO, OPEN, YES };
 
@@ -21,8 +21,7 @@ static int compare(const double *more, const double *less, int64_t rows, double 
     return answer;
 }
 
-/* found (count, count): whether the first of a pair dominates the second; of equal ones the first does. */
-EXPORTED void compare_elements(const double *entries, int64_t count, int64_t rows, double roundings, double smallest, int8_t *found) {
+void compare_elements(const double *entries, int64_t count, int64_t rows, double roundings, double smallest, int8_t *found) {
     for (int64_t f = 0; f < count; f++)
         for (int64_t e = 0; e < count; e++) {
             int same = 0, answer = NO;

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "sets.h"
-#include "team.h"
-
 double gained(const Elements *all, int64_t target, const double *matrix) {
     int d = all->dimension;
     double criterion = all->criterion == TRACE ? trace_of_inverse(d, matrix) : -log_determinant(d, matrix);
@@ -27,8 +24,7 @@ static void raised_in_the_plane(const double *first, const double *second, doubl
     double middle = (a + c) / 2, half = sqrt((a - c) * (a - c) / 4 + b * b), share = 1.0, low = 0.0;
     if (middle > -half && middle < half) /* times the projector (X - low) / (high - low) */
         share = (middle + half) / (2 * half), low = middle - half;
-    else if (middle < half)
-        share = 0.0;
+    else if (middle < half) share = 0.0;
     out[0] = first[0] + share * (a - low);
     out[1] = first[1] + share * b;
     out[2] = first[2] + share * (c - low);
@@ -67,14 +63,11 @@ void bound_robot(const Choices *choices, int64_t robot, uint64_t mask, double *b
     }
 }
 
-/* `bounds` (robots, targets, entries) of what the elements of masks (robots) tell. */
-EXPORTED void bound_robots(const Choices *choices, const uint64_t *masks, double *bounds) {
+void bound_robots(const Choices *choices, const uint64_t *masks, double *bounds) {
     for (int64_t i = 0; i < choices->robots; i++) bound_robot(choices, i, masks[i], bounds + i * width_of(&choices->all));
 }
 
-/* What groups gain about each target, `values` (groups, targets), where their robots tell `bounds`;
-   `members` (groups, robots). */
-EXPORTED void group_values(const Choices *choices, const double *bounds, int64_t groups, const uint8_t *members, double *values) {
+void group_values(const Choices *choices, const double *bounds, int64_t groups, const uint8_t *members, double *values) {
     const Elements *all = &choices->all;
     double matrix[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
     for (int64_t g = 0; g < groups; g++)

@@ -1,8 +1,7 @@
 /* Elements that robots choose from: what each tells about the targets, and what is gained by that (trace, log-det). */
-#ifndef RATT_ELEMENTS_H
-#define RATT_ELEMENTS_H
+#pragma once
 
-#include <stdint.h>
+#include "team.h"
 
 /* Symmetric matrices are packed as in team.h. */
 typedef struct {
@@ -34,9 +33,7 @@ static inline const double *information_of(const Elements *all, int64_t element,
     return all->information + element * width_of(all) + target * all->entries;
 }
 
-static inline int sees(const Elements *all, int64_t element, int64_t target) {
-    return all->sees[element * all->targets + target];
-}
+static inline int sees(const Elements *all, int64_t element, int64_t target) { return all->sees[element * all->targets + target]; }
 
 /* What is gained about a target whose posterior information is a packed matrix. */
 double gained(const Elements *all, int64_t target, const double *matrix);
@@ -50,4 +47,8 @@ void raised(int dimension, const double *first, const double *second, double *ou
 /* Set `bound` (targets, entries) to no less than what any element of a robot's mask tells. */
 void bound_robot(const Choices *choices, int64_t robot, uint64_t mask, double *bound);
 
-#endif
+/* `bounds` (robots, targets, entries) of what the elements of masks (robots) tell. */
+EXPORTED void bound_robots(const Choices *choices, const uint64_t *masks, double *bounds);
+/* What groups gain about each target, `values` (groups, targets), where their robots tell `bounds`;
+   `members` (groups, robots). */
+EXPORTED void group_values(const Choices *choices, const double *bounds, int64_t groups, const uint8_t *members, double *values);

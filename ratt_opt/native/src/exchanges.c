@@ -3,9 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "records.h"
-#include "sets.h"
-#include "team.h"
+#include "sets_of_size.h"
 
 /* Whether an exchange is left to be tried; `pairs` are counted down, and a call ends when none is left. */
 enum { UNFINISHED, FINISHED };
@@ -77,11 +75,8 @@ static int exchange_found(Family *f, int64_t top, const Scan *scan) {
     return 0;
 }
 
-/* Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens. *value: of
-   the best group; returns 1 at the end, 0 after about so many `pairs` (the next call with the same `scan` goes on there),
-   -1 where memory is short. */
-EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *must, double share, int64_t pairs,
-                             Scan *scan, double *value) {
+int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *must, double share, int64_t pairs, Scan *scan,
+                    double *value) {
     int width = team->targets * entries_of(team), finished = UNFINISHED;
     double *memory = malloc(((size_t)(groups + 2) * width + (size_t)groups + 1) * sizeof(double));
     if (!memory) return -1;
@@ -146,10 +141,7 @@ static int exchange_in_set(OneSet *set, const Scan *scan) {
     return 0;
 }
 
-/* Exchange one robot inside for one outside, the best pair each time, while that lowers the value of the set. `kept`
-   (targets, entries): information without the robots inside; `where` (robots) is changed in place. Returns 1 at the end, 0
-   after about so many `pairs` (the next call with the same `scan` goes on there), -1 where memory is short. */
-EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t pairs, Scan *scan) {
+int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t pairs, Scan *scan) {
     int width = team->targets * entries_of(team), finished = UNFINISHED;
     double *sums = malloc(2 * (size_t)width * sizeof(double));
     if (!sums) return -1;

@@ -1,9 +1,7 @@
 /* Marginal gains of the greedy algorithm's candidates, planar targets; why the bounds hold is in lazy_greedy.py. */
 #include <math.h>
 
-#include "records.h"
-#include "sets.h"
-#include "team.h"
+#include "planar.h"
 
 enum { LANES = 8 }; /* targets side by side; the ratios of so many determinants have a product, see team.c, PRODUCTS */
 
@@ -79,9 +77,7 @@ static Gain largest_gain(const Greedy *g, const double *added, double enough) {
     return (Gain){now - after, INFINITY};
 }
 
-/* Gains and bounds of those candidates whose gain may come within `close` of the largest, which is `best` so far; returns
-   the largest. */
-EXPORTED double evaluate_gains(const Greedy *g, const int64_t *candidates, int64_t count, double close, double best) {
+double evaluate_gains(const Greedy *g, const int64_t *candidates, int64_t count, double close, double best) {
     for (int64_t n = 0; n < count; n++) {
         int64_t e = candidates[n];
         if (g->bounds[e] < best - close) continue;

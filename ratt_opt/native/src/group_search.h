@@ -1,10 +1,7 @@
 /* The search for a group of negative reduced cost, shared by the files of pricing. */
-#ifndef RATT_GROUP_SEARCH_H
-#define RATT_GROUP_SEARCH_H
+#pragma once
 
-#include <stdint.h>
-
-#include "records.h"
+#include "pricing.h"
 
 static const double ROUNDING = 1e-10; /* relative: averages must be higher to prove anything */
 
@@ -71,5 +68,3 @@ void settle(Search *s, Node *node);
 /* flow.c */
 /* Least cost of links, `link` each, and robots over the groups of states; its group is `inside`. */
 int64_t least_cut(Search *s, const int8_t *state, int64_t link);
-
-#endif

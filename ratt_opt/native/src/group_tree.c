@@ -5,8 +5,6 @@
 #include <string.h>
 
 #include "group_search.h"
-#include "sets.h"
-#include "team.h"
 
 enum { FINISHED, PAUSED, FULL, OPEN };
 enum { SENSE, INSIDE, SENSING, BLINDED_ARE, LIMIT, WORTH, COPIES, BUDGET, FLOW, LISTED }; /* what is written of a node, with a number */
@@ -14,13 +12,6 @@ enum { ROUNDS = 8 };             /* of multipliers at a case */
 enum { TRIED = 64 };             /* kept flows, those that closed a case last */
 /* Robots valued at a case, for each robot, to find how many are blinded, and to show it; the latter in one group, too. */
 enum { QUICK = 60, WRITTEN = 600, OF_ONE = 10000 };
-
-/* Of a tree over sets: any `size` of the `count` robots in the search's row of order are worth the threshold with those in `sensing`;
-   those before `first` do not sense. */
-typedef struct {
-    uint64_t sensing; /* if limits close rows */
-    int32_t count, first, size;
-} Row;
 
 /* Of a node, `low` robots are blinded as far as is written, and `need` as far as is found; `found`: one more senses for sure. */
 typedef struct {
@@ -489,10 +480,7 @@ static int expand(Proof *p) {
     return PAUSED;
 }
 
-/* Write a tree that any `size` robots of those in `among` (robots) are worth the threshold, on from `*depth`, or from its root if
-   that is -1: 0 it is finished, 1 paused once so many robots were valued, 2 too large for the arrays, 3 some set is worth less. */
-EXPORTED int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row *rows, int32_t *depth, int64_t size,
-                            int64_t effort) {
+int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row *rows, int32_t *depth, int64_t size, int64_t effort) {
     Proof p = {.s = s, .robots = s->robots, .out = out, .by_limits = out->n_limits > 0};
     if (*depth < 0) {
         memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
@@ -504,8 +492,7 @@ EXPORTED int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row 
     return write_sets(&p, rows, depth, effort);
 }
 
-/* Grow a tree for so many cases: 0 it is finished, 1 paused, 2 too large for the arrays, 3 some group is not closed. */
-EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
+int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
     size_t n = (size_t)s->robots;
     Proof p = {.s = s, .robots = s->robots, .arcs = (int)s->q.start[n], .out = out};
     p.gains = malloc(2 * n * sizeof(int64_t)), p.seen = malloc(n), p.queue = malloc(n * sizeof(int));
@@ -521,8 +508,7 @@ EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
         s->depth = 1;
     }
     int64_t stop = s->visited + cases;
-    while (code == PAUSED && s->depth > 0 && s->visited < stop)
-        code = out->count + 4 * (int64_t)n + 12 > out->capacity ? FULL : expand(&p);
+    while (code == PAUSED && s->depth > 0 && s->visited < stop) code = out->count + 4 * (int64_t)n + 12 > out->capacity ? FULL : expand(&p);
     free(p.gains), free(p.seen), free(p.queue), free(p.rows);
     return code == PAUSED && s->depth == 0 ? FINISHED : code;
 }

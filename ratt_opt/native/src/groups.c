@@ -1,6 +1,5 @@
 /* Columns of the master: the groups that an attack may leave, what each costs, and those that duals would buy. */
-#include "records.h"
-#include "sets.h"
+#include "groups.h"
 
 /* The robot next to those inside, and not decided, with the most links to decided ones; -1 where there is none. Adds to *cut the
    links that such robots cost at least, each those to robots inside or those to robots outside. */
@@ -14,11 +13,8 @@ static int most_linked(const uint64_t *neighbours, const Branch *node, int64_t *
     return pick;
 }
 
-/* List connected sets that at most `most` links leave, none of them protected; each grows from its lowest robot, and a
-   robot next to it is taken in or left out, which costs its links. At most 63 robots. Goes on from `position`: robots begun
-   with, depth of the stack (2 robots + 2). Ends after `steps` or `room` sets; returns how many were written. */
-EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most,
-                             Branch *stack, int64_t *position, int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts) {
+int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most, Branch *stack, int64_t *position,
+                    int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts) {
     int64_t found = 0;
     while (steps-- > 0 && found < room) {
         if (position[1] == 0) {
@@ -48,10 +44,8 @@ EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint6
     return found;
 }
 
-/* Keep the groups in which blinding at most `most` robots leaves a set below the threshold, and how many it takes.
-   `sizes`: of the largest such set inside each set, plus one, or 0. Returns how many are kept. */
-EXPORTED int64_t keep_reachable(const uint8_t *sizes, int64_t count, const uint32_t *groups, const uint8_t *cuts, int most,
-                                uint32_t *kept, uint8_t *kept_cuts, uint8_t *blinded) {
+int64_t keep_reachable(const uint8_t *sizes, int64_t count, const uint32_t *groups, const uint8_t *cuts, int most, uint32_t *kept,
+                       uint8_t *kept_cuts, uint8_t *blinded) {
     int64_t n = 0;
     for (int64_t k = 0; k < count; k++) {
         int blind = size_of(groups[k]) + 1 - sizes[groups[k]];
@@ -72,8 +66,7 @@ static inline int64_t reduced_cost(const Columns *c, int64_t k, const Duals *dua
     return cost;
 }
 
-/* The column of least reduced cost with each robot, (robots) where it is negative, else -1; returns the least of all. */
-EXPORTED int64_t price(int robots, const Columns *columns, const Duals *duals, int64_t *cheapest) {
+int64_t price(int robots, const Columns *columns, const Duals *duals, int64_t *cheapest) {
     int64_t best[64], least = INT64_MAX, worst = -1;
     for (int i = 0; i < robots; i++) best[i] = -1, cheapest[i] = -1;
     for (int64_t k = 0; k < columns->count; k++) {
@@ -90,9 +83,7 @@ EXPORTED int64_t price(int robots, const Columns *columns, const Duals *duals, i
     return least;
 }
 
-/* The columns of a reduced cost of at most `gap`, as many as there is `room` for; returns how many there are. */
-EXPORTED int64_t within_gap(const Columns *columns, const Duals *duals, int64_t gap, int64_t room, int64_t *chosen,
-                            int64_t *costs) {
+int64_t within_gap(const Columns *columns, const Duals *duals, int64_t gap, int64_t room, int64_t *chosen, int64_t *costs) {
     int64_t n = 0;
     for (int64_t k = 0; k < columns->count; k++) {
         int64_t cost = reduced_cost(columns, k, duals);
@@ -103,9 +94,7 @@ EXPORTED int64_t within_gap(const Columns *columns, const Duals *duals, int64_t 
     return n;
 }
 
-/* At most `size` robots of `set` sense in a group that has those of `protected` in `set`. Raises the robots to blind, and keeps
-   the columns in which at most `most` are, in place; returns how many. */
-EXPORTED int64_t restrict_columns(Columns *columns, uint64_t set, int size, uint64_t protected, int most) {
+int64_t restrict_columns(Columns *columns, uint64_t set, int size, uint64_t protected, int most) {
     int64_t n = 0;
     for (int64_t k = 0; k < columns->count; k++) {
         uint64_t group = group_at(columns, k);

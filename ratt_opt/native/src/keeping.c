@@ -11,8 +11,6 @@
 #include <string.h>
 
 #include "covers.h"
-#include "sets.h"
-#include "team.h"
 
 /* Added to every price: among free elements those that cost least of the level come first. */
 static const double NO_PRICE = 1e-3;
@@ -41,8 +39,8 @@ int prepare_scratch(Scratch *scratch, const Choices *choices, int64_t groups) {
 
 /* Lose targets of a group until the rest is worth at most `level`; the price of all elements that see a lost one.
    `out` (elements): the group's elements that see no lost target. `costs`, `lost` (targets). */
-static double lose(const Elements *all, const uint8_t *inside, const double *price, const double *values, double level,
-                   const double *noise, uint8_t *out, double *costs, uint8_t *lost) {
+static double lose(const Elements *all, const uint8_t *inside, const double *price, const double *values, double level, const double *noise,
+                   uint8_t *out, double *costs, uint8_t *lost) {
     double left = 0.0, paid = 0.0;
     for (int64_t j = 0; j < all->targets; j++) left += values[j], costs[j] = 0.0, lost[j] = 0;
     for (int64_t e = 0; e < all->elements; e++) {
@@ -72,12 +70,8 @@ static double lose(const Elements *all, const uint8_t *inside, const double *pri
     return paid;
 }
 
-/* For each group lose targets until the rest is worth at most `level`; `values` (groups, targets) what it can be worth
-   for each; `price` (elements); `noise` (groups, targets) factors of the order in which targets are lost. Set: `paid`
-   (groups) the price of all elements that see a lost target, infinite if the level is not reached; `out` (groups,
-   elements) the group's other elements. 1 where memory is short, else 0. */
-EXPORTED int lose_all(const Choices *choices, int64_t groups, const uint8_t *inside, const double *price, const double *values,
-                      double level, const double *noise, uint8_t *out, double *paid) {
+int lose_all(const Choices *choices, int64_t groups, const uint8_t *inside, const double *price, const double *values, double level,
+             const double *noise, uint8_t *out, double *paid) {
     const Elements *all = &choices->all;
     int64_t elements = all->elements, targets = all->targets;
     double *costs = calloc((size_t)targets + 1, sizeof(double));
@@ -172,9 +166,8 @@ double keep(const Choices *choices, const uint8_t *inside, const double *price, 
     return paid;
 }
 
-/* `keep` for a call from outside: *paid is the price. 1 where memory is short, else 0. */
-EXPORTED int keep_elements(const Choices *choices, const uint8_t *inside, const double *price, double level, uint8_t *kept,
-                           double *sums, double *paid) {
+int keep_elements(const Choices *choices, const uint8_t *inside, const double *price, double level, uint8_t *kept, double *sums,
+                  double *paid) {
     Scratch scratch;
     if (prepare_scratch(&scratch, choices, 0)) return 1;
     *paid = keep(choices, inside, price, level, kept, sums, &scratch);

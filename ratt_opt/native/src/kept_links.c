@@ -12,8 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "records.h"
-#include "sets.h"
+#include "kept_links.h"
 
 enum { FREE, INSIDE, OUTSIDE };
 enum { CLOSED, OPEN, FULL };
@@ -27,14 +26,14 @@ typedef struct {
     int64_t value, room;
 } Node;
 
-typedef struct {
+struct KeptSearch {
     KeptLinks *q;
     Node *nodes;
     int64_t *flow, *written, *excess, *bonus; /* (links) twice, the second as in the tree so far; (robots) twice */
     int *queue, *from, *via, *mark;           /* (robots) */
     int depth, stamp, dead;
     int64_t mean;                             /* weight of a link */
-} KeptSearch;
+};
 
 /* A line that bounds g(multiplier) = bound from below: its height at 0, and its slope. */
 typedef struct {
@@ -98,8 +97,7 @@ static void send_to(KeptSearch *s, int origin, int goal) {
         int64_t part = part_of(s, s->via[j], s->from[j]);
         if (part < amount) amount = part;
     }
-    for (int j = goal; s->from[j] >= 0; j = s->from[j])
-        s->flow[s->via[j]] += is_first(s, s->via[j], s->from[j]) ? -amount : amount;
+    for (int j = goal; s->from[j] >= 0; j = s->from[j]) s->flow[s->via[j]] += is_first(s, s->via[j], s->from[j]) ? -amount : amount;
     s->excess[origin] -= amount, s->excess[goal] += amount;
 }
 
@@ -109,8 +107,7 @@ static int64_t balance(KeptSearch *s, const uint8_t *state) {
     int64_t left = 0;
     s->dead = ++s->stamp;
     for (int i = 0; i < robots; i++)
-        while (state[i] == FREE && s->excess[i] > 0 && s->mark[i] != s->dead && (goal = path_from(s, state, i)) >= 0)
-            send_to(s, i, goal);
+        while (state[i] == FREE && s->excess[i] > 0 && s->mark[i] != s->dead && (goal = path_from(s, state, i)) >= 0) send_to(s, i, goal);
     s->stamp++;
     for (int i = 0; i < robots; i++)
         if (state[i] == FREE && s->excess[i] > 0) left += s->excess[i], s->mark[i] = s->stamp, s->queue[tail++] = i;
@@ -141,8 +138,7 @@ static int record(const KeptSearch *s, const uint8_t *state, int marked, int64_t
     KeptLinks *q = s->q;
     if (q->found >= q->most_found) return 0;
     uint8_t *group = q->groups + q->found * q->robots;
-    for (int i = 0; i < q->robots; i++)
-        group[i] = state[i] == INSIDE || (marked && state[i] == FREE && s->mark[i] == s->stamp);
+    for (int i = 0; i < q->robots; i++) group[i] = state[i] == INSIDE || (marked && state[i] == FREE && s->mark[i] == s->stamp);
     q->values[q->found++] = value;
     return 1;
 }
@@ -270,14 +266,13 @@ static int examine(KeptSearch *s) {
     return OPEN;
 }
 
-EXPORTED void close_kept_links(KeptSearch *s) {
+void close_kept_links(KeptSearch *s) {
     if (!s) return;
     if (s->nodes) free(s->nodes[0].state);
     free(s->nodes), free(s->flow), free(s->queue), free(s);
 }
 
-/* Begin a search, whose arrays are kept alive by others; NULL if memory is short. */
-EXPORTED KeptSearch *open_kept_links(KeptLinks *question) {
+KeptSearch *open_kept_links(KeptLinks *question) {
     KeptSearch *s = calloc(1, sizeof(KeptSearch));
     if (!s) return NULL;
     size_t n = (size_t)question->robots, m = (size_t)question->links;
@@ -300,8 +295,7 @@ EXPORTED KeptSearch *open_kept_links(KeptLinks *question) {
     return s;
 }
 
-/* Go on for `nodes` nodes. PAUSED: they are used up; FULL: groups must be taken away first. */
-EXPORTED int search_kept_links(KeptSearch *s, int64_t nodes) {
+int search_kept_links(KeptSearch *s, int64_t nodes) {
     for (int64_t k = 0; s->depth > 0; k++) {
         if (k == nodes) return PAUSED;
         s->q->nodes++;

@@ -3,7 +3,7 @@
    Each function takes a part of the sets, so that Python looks at the clock between two parts. */
 #include <math.h>
 
-#include "sets.h"
+#include "lattice.h"
 
 enum { LANES = 32 };      /* ends side by side: one alone would wait for the one before, and is no vector instruction */
 enum { BLOCK = 1 << 13 }; /* differences at once: 64 KiB, which stay in a core's own cache for all elements */
@@ -50,9 +50,7 @@ static void spread_of_far(const double *sets, int64_t count, int64_t step, doubl
     for (int k = 0; k < LANES; k++) *low = lesser(least[k], *low), *high = greater(most[k], *high);
 }
 
-/* Lower *low and raise *high to f(S + i) - f(S) over the sets without i of numbers first..last - 1, which are multiples of
-   LANES or those of all sets. */
-EXPORTED void marginal_ends(const double *values, int i, int64_t first, int64_t last, double *low, double *high) {
+void marginal_ends(const double *values, int i, int64_t first, int64_t last, double *low, double *high) {
     int64_t step = (int64_t)1 << i;
     if (step < LANES) {
         spread_of_close(values + 2 * first, 2 * (last - first), step, low, high);
@@ -108,9 +106,7 @@ static double smallest_rise(const double *falls, int64_t size, int64_t step) {
     return low;
 }
 
-/* Lower ends (j) to f(S + i) + f(S + j) - f(S + i + j) - f(S) by each i below j and below 13, over the sets without j of
-   numbers first..last - 1: whole blocks, or all sets if these are fewer. */
-EXPORTED void near_differences(const double *values, int j, int64_t first, int64_t last, double *ends) {
+void near_differences(const double *values, int j, int64_t first, int64_t last, double *ends) {
     double falls[BLOCK + LANES] = {0};
     for (; first < last; first += BLOCK) {
         int64_t size = last - first < BLOCK ? last - first : BLOCK;
@@ -119,20 +115,18 @@ EXPORTED void near_differences(const double *values, int j, int64_t first, int64
     }
 }
 
-/* The least of `known` and the same by i, no less than 13, and j, over the sets without both of numbers first..last - 1:
-   whole blocks. */
-EXPORTED double far_differences(const double *values, int i, int j, int64_t first, int64_t last, double known) {
+double far_differences(const double *values, int i, int j, int64_t first, int64_t last, double known) {
     double low[FEW], high[FEW];
     for (; first < last; first += FEW) {
         const double *neither = values + without(without(first, i), j), *lower = neither + ((int64_t)1 << i);
-        for (int64_t s = 0; s < FEW; s++) low[s] = neither[s] - neither[s + ((int64_t)1 << j)], high[s] = lower[s] - lower[s + ((int64_t)1 << j)];
+        for (int64_t s = 0; s < FEW; s++)
+            low[s] = neither[s] - neither[s + ((int64_t)1 << j)], high[s] = lower[s] - lower[s + ((int64_t)1 << j)];
         known = smallest_difference(high, low, FEW, known);
     }
     return known;
 }
 
-/* Lower *slack to f(A) + f(B) - f(A + B) of disjoint A, B whose unions are first..last - 1; `sets`: those A and B. */
-EXPORTED void disjoint_slack(const double *values, int64_t first, int64_t last, double *slack, int64_t *sets) {
+void disjoint_slack(const double *values, int64_t first, int64_t last, double *slack, int64_t *sets) {
     for (int64_t all = first; all < last; all++)
         for (int64_t part = all;; part = (part - 1) & all) {
             double found = values[part] + values[all ^ part] - values[all];
@@ -141,8 +135,7 @@ EXPORTED void disjoint_slack(const double *values, int64_t first, int64_t last, 
         }
 }
 
-/* Lower *slack to f(A) + f(B) - f(A | B) of A in first..last - 1 and any B from A on, of `count` sets. */
-EXPORTED void overlapping_slack(const double *values, int64_t count, int64_t first, int64_t last, double *slack, int64_t *sets) {
+void overlapping_slack(const double *values, int64_t count, int64_t first, int64_t last, double *slack, int64_t *sets) {
     for (int64_t a = first; a < last; a++)
         for (int64_t b = a; b < count; b++) {
             double found = values[a] + values[b] - values[a | b];
@@ -167,12 +160,8 @@ static int fill_positions(int axes, const int64_t *sizes, int64_t choice, int64_
     return count;
 }
 
-/* Lower ratios[0] to (sum of f(S + w) - f(S) over w in T - S) / (f(T) - f(S)), if that gain is positive, of T at positions
-   first..last - 1 and S in T; `sets`: T and the mask of S. A difference may be off by `noise`: ratios[0] is what the ratio
-   is at most, of gains above it, ratios[1] what it is at least, of all. If T has one element more than S, it is 1.
-   `values`: one axis of `sizes` (axes) options each, option 0 being none; `positions` (1 << axes) is spare. */
-EXPORTED void gain_ratio(const double *values, int axes, const int64_t *sizes, int64_t first, int64_t last, double noise,
-                         int64_t *positions, double *ratios, int64_t *sets) {
+void gain_ratio(const double *values, int axes, const int64_t *sizes, int64_t first, int64_t last, double noise, int64_t *positions,
+                double *ratios, int64_t *sets) {
     for (int64_t top = first; top < last; top++) {
         int count = fill_positions(axes, sizes, top, positions);
         for (int64_t part = 0; part < ((int64_t)1 << count) - 1; part++) {

@@ -3,7 +3,13 @@
 
 #include "covers.h"
 #include "marginals.h"
-#include "records.h"
+#include "annealing.h"
+#include "groups.h"
+#include "kept_links.h"
+#include "planar.h"
+#include "polytopes.h"
+#include "pricing.h"
+#include "sets_of_size.h"
 #include "sets.h"
 #include "team.h"
 
@@ -28,7 +34,7 @@ EXPORTED void layout(int64_t *sizes) {
 
 /* Those of the searches for best plans. */
 EXPORTED void layout_of_searches(int64_t *sizes) {
-    const int64_t all[] = {sizeof(Choices), sizeof(Ways), sizeof(Covers), sizeof(Sums), sizeof(Step), sizeof(Stack),
-                           sizeof(Node), sizeof(Record), sizeof(Choosers), sizeof(Attacks), sizeof(Path), sizeof(Gains)};
+    const int64_t all[] = {sizeof(Choices), sizeof(Ways),   sizeof(Covers),   sizeof(Sums),    sizeof(Step), sizeof(Stack),
+                           sizeof(Node),    sizeof(Record), sizeof(Choosers), sizeof(Attacks), sizeof(Path), sizeof(Gains)};
     memcpy(sizes, all, sizeof(all));
 }

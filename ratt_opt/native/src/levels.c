@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "group_search.h"
-#include "sets.h"
 #include "team.h"
 
 enum { RATIOS = 5 };             /* tried to compare the weights of two sizes */
@@ -18,12 +17,9 @@ double error_before(const Team *team) {
     return team->criterion == LARGEST ? team->before_all : total;
 }
 
-static double level_of(const Search *s, double value) {
-    return s->q.team->criterion == LOG_DET ? value : 1.0 / (s->before - value);
-}
+static double level_of(const Search *s, double value) { return s->q.team->criterion == LOG_DET ? value : 1.0 / (s->before - value); }
 
-/* The level from which sets are not below a threshold, rounding included; infinite where no value is sure to be as high. */
-EXPORTED double level_of_threshold(const Team *team, double threshold) {
+double level_of_threshold(const Team *team, double threshold) {
     if (team->criterion == LOG_DET) return threshold + 1e-12 * fabs(threshold);
     double before = error_before(team), error = before - threshold - 1e-12 * (fabs(before) + fabs(threshold));
     return error > 0.0 ? 1.0 / error : INFINITY;

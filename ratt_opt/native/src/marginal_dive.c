@@ -3,8 +3,6 @@
    In the order of a path the first robots have chosen an element each. What the others can add to these is at most the
    sum, over robots, of an element's largest gain: log-determinants are submodular (Nemhauser, Wolsey and Fisher 1978). */
 #include "marginals.h"
-#include "sets.h"
-#include "team.h"
 
 enum { PROVED, SPENT, PLAN, FULL }; /* how a run ends, see levels.py */
 enum { BRANCHED = -1 };             /* in a record: the node is divided by the elements of the next robot */
@@ -95,10 +93,8 @@ static void choose(const Choosers *team, Path *path, int64_t element) {
 
 static void take_back(const Choosers *team, Path *path) { mark_seen(team, path, --path->depth); }
 
-/* Search on for so many nodes, for which the record has room; the outcome. At a node where robots have not chosen yet
-   `most` attacks are tried. A plan that is worth more than the level by less than `slack` is not found. */
-EXPORTED int dive_by_marginals(const Choosers *team, Attacks *attacks, Gains *gains, Path *path, double level, double slack,
-                               int64_t nodes, int64_t most) {
+int dive_by_marginals(const Choosers *team, Attacks *attacks, Gains *gains, Path *path, double level, double slack, int64_t nodes,
+                      int64_t most) {
     while (nodes-- > 0) {
         int is_plan = path->depth == team->robots;
         int64_t ended = dead_end(team, attacks, gains, path, is_plan ? level + slack : level, is_plan ? attacks->attacks : most);

@@ -1,6 +1,5 @@
 /* The search by marginal gains: the team in the order in which robots choose, known attacks, and the way down. */
-#ifndef RATT_MARGINALS_H
-#define RATT_MARGINALS_H
+#pragma once
 
 #include "elements.h"
 
@@ -39,4 +38,7 @@ typedef struct {
     int64_t *slot;    /* (targets) where the set asked for is */
 } Gains;
 
-#endif
+/* Search on for so many nodes, for which the record has room; the outcome. At a node where robots have not chosen yet
+   `most` attacks are tried. A plan that is worth more than the level by less than `slack` is not found. */
+EXPORTED int dive_by_marginals(const Choosers *team, Attacks *attacks, Gains *gains, Path *path, double level, double slack, int64_t nodes,
+                               int64_t most);

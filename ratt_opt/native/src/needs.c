@@ -3,8 +3,6 @@
 #include <string.h>
 
 #include "group_search.h"
-#include "sets.h"
-#include "team.h"
 
 enum { QUICK = 60 }; /* robots valued at a node, for each robot, to decide what a group needs */
 

@@ -1,7 +1,7 @@
 /* Covariances C L^-1 C' of outputs C (outputs, dimension) of states whose information L is positive definite. */
 #include <math.h>
 
-#include "sets.h"
+#include "outputs.h"
 
 /* Compiled for each usual dimension: loops over as few entries take longer than what is in them. */
 #define FOR_DIMENSION __attribute__((always_inline)) static inline
@@ -33,7 +33,7 @@ FOR_DIMENSION double product(int64_t d, const double *first, const double *secon
 
 /* With L = G G': the sum of squares of G^-1 C'. */
 FOR_DIMENSION void traces_of(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output,
-                            double *spare, double *traces) {
+                             double *spare, double *traces) {
     double *factor = spare, *solved = spare + d * d;
     for (int64_t k = 0; k < count * targets; k++) {
         const double *rows = output + k % targets * q * d;
@@ -48,8 +48,8 @@ FOR_DIMENSION void traces_of(int64_t count, int64_t targets, int64_t q, int64_t 
 }
 
 /* The inner products of the columns of G^-1 C'. */
-FOR_DIMENSION void covariances_of(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices,
-                                  const double *output, double *spare, double *covariances) {
+FOR_DIMENSION void covariances_of(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output,
+                                  double *spare, double *covariances) {
     double *factor = spare, *solved = spare + d * d;
     for (int64_t k = 0; k < count * targets; k++) {
         const double *rows = output + k % targets * q * d;
@@ -63,18 +63,16 @@ FOR_DIMENSION void covariances_of(int64_t count, int64_t targets, int64_t q, int
     }
 }
 
-/* Traces (count, targets) of the covariances; matrices (count, targets, d, d), output (targets, q, d), `spare` (d + q, d). */
-EXPORTED void output_traces(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output,
-                            double *spare, double *traces) {
+void output_traces(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output, double *spare,
+                   double *traces) {
     if (d == 2) traces_of(count, targets, q, 2, matrices, output, spare, traces);
     else if (d == 4) traces_of(count, targets, q, 4, matrices, output, spare, traces);
     else if (d == 6) traces_of(count, targets, q, 6, matrices, output, spare, traces);
     else traces_of(count, targets, q, d, matrices, output, spare, traces);
 }
 
-/* The same, of covariances (count, targets, q, q). */
-EXPORTED void output_covariances(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices,
-                                 const double *output, double *spare, double *covariances) {
+void output_covariances(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output, double *spare,
+                        double *covariances) {
     if (d == 2) covariances_of(count, targets, q, 2, matrices, output, spare, covariances);
     else if (d == 4) covariances_of(count, targets, q, 4, matrices, output, spare, covariances);
     else if (d == 6) covariances_of(count, targets, q, 6, matrices, output, spare, covariances);

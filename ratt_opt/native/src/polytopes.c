@@ -1,10 +1,8 @@
 /* Outer polytopes of the information of sets in the plane, and the bound of an affine underestimator over their vertices. */
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
-#include "sets.h"
-#include "team.h"
+#include "polytopes.h"
 
 enum { MOST_VERTICES = 512 };
 enum { HALVINGS = 60 }; /* of a level's interval: to below the rounding of its ends */
@@ -50,12 +48,8 @@ static int cut(Vertices *v, const double *normal, double offset, int row, int ca
     return v->count > 0;
 }
 
-/* Vertices of many polytopes in three dimensions, one after the other; their number. Polytope (j, p) is {factors[j] y : normals[j] y >=
-   offsets[j, p]}; its first six rows are the axes and their negatives, a box. Each further row cuts the vertices found so far.
-   normals (targets, rows, 3), at most 64 rows; offsets (targets, patterns, rows); factors (targets, 3, 3). `vertices`, `facets`:
-   room for `capacity` <= 512 each; numbers (targets, patterns), 0 if the capacity did not suffice. */
-EXPORTED int64_t cut_polytopes(int64_t targets, int64_t patterns, int64_t rows, int64_t capacity, const double *normals,
-                               const double *offsets, const double *factors, double *vertices, uint64_t *facets, int64_t *numbers) {
+int64_t cut_polytopes(int64_t targets, int64_t patterns, int64_t rows, int64_t capacity, const double *normals, const double *offsets,
+                      const double *factors, double *vertices, uint64_t *facets, int64_t *numbers) {
     int64_t total = 0;
     Vertices v;
     for (int64_t j = 0; j < targets; j++)
@@ -92,14 +86,13 @@ static double planar_value(const Team *team, int64_t j, double a, double b, doub
     return team->weights[j] * log(determinant / before);
 }
 
-/* Each target's value of information (count, targets, 3). */
-EXPORTED void planar_values_of_targets(const Team *team, int64_t count, const double *matrices, double *values) {
+void planar_values_of_targets(const Team *team, int64_t count, const double *matrices, double *values) {
     for (int64_t k = 0; k < count * team->targets; k++)
         values[k] = planar_value(team, k % team->targets, matrices[3 * k], matrices[3 * k + 1], matrices[3 * k + 2]);
 }
 
-/* The same of starts (targets, patterns, 3) plus each vertex of polytope (j, p). */
-EXPORTED void vertex_values(const Team *team, int64_t patterns, const double *starts, const double *vertices, const int64_t *numbers, double *values) {
+void vertex_values(const Team *team, int64_t patterns, const double *starts, const double *vertices, const int64_t *numbers,
+                   double *values) {
     int64_t v = 0;
     for (int64_t k = 0; k < team->targets * patterns; k++)
         for (int64_t i = 0; i < numbers[k]; i++, v++)
@@ -107,8 +100,7 @@ EXPORTED void vertex_values(const Team *team, int64_t patterns, const double *st
                                      starts[3 * k + 2] + vertices[3 * v + 2]);
 }
 
-/* Sum of the closeness of vertices over each facet that they lie on: weights (targets, rows), zero before. */
-EXPORTED void facet_weights(int64_t targets, int64_t rows, const int64_t *first, const double *closeness, const uint64_t *facets, double *weights) {
+void facet_weights(int64_t targets, int64_t rows, const int64_t *first, const double *closeness, const uint64_t *facets, double *weights) {
     for (int64_t j = 0; j < targets; j++)
         for (int64_t v = first[j]; v < first[j + 1]; v++)
             for (uint64_t rest = closeness[v] > 0 ? facets[v] : 0; rest; rest &= rest - 1) {
@@ -117,21 +109,9 @@ EXPORTED void facet_weights(int64_t targets, int64_t rows, const int64_t *first,
             }
 }
 
-/* What an affine underestimator is made of: vertices of each target's polytopes, `light` (V, 3) with the value and the pattern of heavy
-   robots of each; `multipliers` (targets, 3 + heavy): slopes, scores of the heavy robots. */
-typedef struct {
-    int64_t targets, robots, heavies, patterns, size;
-    const int64_t *first, *pattern; /* (targets + 1), (V) */
-    const double *values, *light;
-    const double *inside;           /* (patterns, heavies) 1 if the heavy robot is in the pattern */
-    const int64_t *heavy;           /* (targets, heavies) */
-    const double *information;      /* (robots, targets, 3), zero for heavy robots */
-} Program;
+int64_t layout_of_program(void) { return sizeof(Program); }
 
-EXPORTED int64_t layout_of_program(void) { return sizeof(Program); }
-
-/* `rest` (V): the value of each vertex less what the multipliers say; `spare` (patterns). */
-EXPORTED void rest_of_vertices(const Program *p, const double *multipliers, double *rest, double *spare) {
+void rest_of_vertices(const Program *p, const double *multipliers, double *rest, double *spare) {
     for (int64_t j = 0; j < p->targets; j++) {
         const double *slope = multipliers + j * (3 + p->heavies), *own = slope + 3;
         for (int64_t q = 0; q < p->patterns; q++) {
@@ -146,7 +126,8 @@ EXPORTED void rest_of_vertices(const Program *p, const double *multipliers, doub
 }
 
 /* One target's least `rest`, and the soft one, whose gradient (3 + heavies) is filled; `weight` (patterns) is spare. */
-static double soft_least(const Program *p, int64_t j, const double *rest, double temperature, double *gradient, double *weight, double *soft) {
+static double soft_least(const Program *p, int64_t j, const double *rest, double temperature, double *gradient, double *weight,
+                         double *soft) {
     double least = INFINITY, mass = 0.0;
     for (int64_t v = p->first[j]; v < p->first[j + 1]; v++) least = fmin(least, rest[v]);
     memset(weight, 0, (size_t)p->patterns * sizeof(double));
@@ -182,10 +163,8 @@ static double soft_choice(const Program *p, const double *scores, double low, do
     return total;
 }
 
-/* The bound of the multipliers, and its smoothed value in *soft; fills `gradient` (targets, 3 + heavies), zero before, and
-   `fraction` (robots). `rest` (V), `spare` (patterns + 2 robots). */
-EXPORTED double smoothed_bound(const Program *p, const double *multipliers, double temperature, double *gradient, double *fraction, double *soft,
-                               double *rest, double *spare) {
+double smoothed_bound(const Program *p, const double *multipliers, double temperature, double *gradient, double *fraction, double *soft,
+                      double *rest, double *spare) {
     double bound = 0.0, total = 0.0, *scores = spare + p->patterns, *sorted = scores + p->robots;
     int64_t width = 3 + p->heavies;
     rest_of_vertices(p, multipliers, rest, spare);

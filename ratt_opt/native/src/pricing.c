@@ -4,8 +4,6 @@
 #include <string.h>
 
 #include "group_search.h"
-#include "sets.h"
-#include "team.h"
 
 enum { FINISHED, PAUSED, FOUND };
 enum { ROUNDS = 4 };               /* of multipliers at a node */
@@ -211,14 +209,13 @@ static int step(Search *s, int8_t *group, int64_t *column) {
     return PAUSED;
 }
 
-EXPORTED void close_pricing(Search *s) {
+void close_pricing(Search *s) {
     if (!s) return;
     if (s->nodes) free(s->nodes[0].state), free(s->nodes[0].sums);
     free(s->nodes), free(s->excess), free(s->distance), free(s->weight), free(s->inside), free(s);
 }
 
-/* Begin a search, whose arrays are kept alive by others; NULL where memory is short. */
-EXPORTED Search *open_pricing(const Pricing *question) {
+Search *open_pricing(const Pricing *question) {
     Search *s = calloc(1, sizeof(Search));
     if (!s) return NULL;
     size_t n = (size_t)question->team->robots, nodes = 3 * n + 4, arcs = (size_t)question->start[n];
@@ -248,10 +245,7 @@ EXPORTED Search *open_pricing(const Pricing *question) {
     return s;
 }
 
-/* Go on for so many nodes, until all are decided (0) or `room` groups are listed; their number is *count. `groups` (room, robots):
-   0 outside, 1 sensing, 2 blinded; `columns` (room, 4): blinded robots at least and as found, links that leave it, reduced
-   cost. `progress`: nodes so far. */
-EXPORTED int list_groups_below(Search *s, int64_t nodes, int64_t room, int8_t *groups, int64_t *columns, int64_t *count, int64_t *progress) {
+int list_groups_below(Search *s, int64_t nodes, int64_t room, int8_t *groups, int64_t *columns, int64_t *count, int64_t *progress) {
     int code = PAUSED;
     int64_t stop = s->visited + nodes;
     while (code != FINISHED && s->visited < stop && *count < room) {
@@ -278,8 +272,7 @@ static int some_may_be_below(Search *s, const uint8_t *group, int64_t size) {
     return may_be_below(s, node, inside - (int)size, s->q.effort) != 0;
 }
 
-/* The most robots of a group that may be below the threshold, at most as many as the search is told. */
-EXPORTED int64_t most_below(Search *s, const uint8_t *group) {
+int64_t most_below(Search *s, const uint8_t *group) {
     Node *node = whole(s, group);
     for (int i = 0; i < s->robots; i++) node->low += group[i];
     node->low--;

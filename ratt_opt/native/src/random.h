@@ -1,6 +1,5 @@
 /* A stream of random numbers. */
-#ifndef RATT_RANDOM_H
-#define RATT_RANDOM_H
+#pragma once
 
 #include <stdint.h>
 
@@ -11,5 +10,3 @@ static inline double uniform(uint64_t *state) {
     *state = x;
     return (double)((x * 0x2545F4914F6CDD1DULL) >> 11) * 0x1p-53;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Sets of robots as bit masks, and how a function is exported. */
-#ifndef RATT_SETS_H
-#define RATT_SETS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -20,5 +19,3 @@ static inline int size_of(uint64_t set) {
 
 /* The lowest robot of a set that is not empty. */
 static inline int lowest(uint64_t set) { return __builtin_ctzll(set); }
-
-#endif

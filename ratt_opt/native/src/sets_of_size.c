@@ -8,9 +8,7 @@
 #include <string.h>
 
 #include "group_search.h"
-#include "records.h"
-#include "sets.h"
-#include "team.h"
+#include "sets_of_size.h"
 
 enum { FINISHED, PAUSED, FOUND };
 
@@ -75,8 +73,7 @@ static int narrow(SetSearch *s, int left) {
         s->both[p] = level[p] - enough;
     }
     if (!drop(s, s->both, left)) return 0;
-    for (int p = 0; p < at->count && s->q->costs; p++)
-        s->both[p] = s->q->costs[candidates[p]] - (s->q->limit - at->spent) / left;
+    for (int p = 0; p < at->count && s->q->costs; p++) s->both[p] = s->q->costs[candidates[p]] - (s->q->limit - at->spent) / left;
     if (s->q->costs && !drop(s, s->both, left)) return 0;
     for (int p = 1; p < at->count && !s->q->in_order; p++) {
         int robot = candidates[p], k = p;
@@ -154,14 +151,12 @@ static int step(SetSearch *s, uint8_t *chosen, double *value) {
     return PAUSED;
 }
 
-EXPORTED void close_sets(SetSearch *s) {
+void close_sets(SetSearch *s) {
     if (!s) return;
     free(s->partial), free(s->candidates), free(s->sums), free(s);
 }
 
-/* Begin a search, whose question is kept alive by others; NULL where memory is short. The threshold, its level and the limit
-   may be lowered between two calls. */
-EXPORTED SetSearch *open_sets(SetQuestion *question) {
+SetSearch *open_sets(SetQuestion *question) {
     SetSearch *s = calloc(1, sizeof(SetSearch));
     if (!s) return NULL;
     size_t n = (size_t)question->team->robots, rows = (size_t)question->size + 1;
@@ -184,8 +179,7 @@ EXPORTED SetSearch *open_sets(SetQuestion *question) {
     return s;
 }
 
-/* Go on for so many partial sets, or to the next set: 0 all are decided, 1 paused, 2 found. `chosen` (robots). */
-EXPORTED int next_set_below(SetSearch *s, int64_t nodes, uint8_t *chosen, double *value, int64_t *progress) {
+int next_set_below(SetSearch *s, int64_t nodes, uint8_t *chosen, double *value, int64_t *progress) {
     int code = PAUSED;
     int64_t stop = s->visited + nodes;
     while (code == PAUSED && s->depth >= 0 && s->visited < stop) code = step(s, chosen, value);
@@ -193,10 +187,8 @@ EXPORTED int next_set_below(SetSearch *s, int64_t nodes, uint8_t *chosen, double
     return s->depth < 0 && code != FOUND ? FINISHED : code;
 }
 
-/* List sets from number *count on, at most as many as there is room for: masks (bit i for robot i, at most 64 robots), values.
-   0 all are decided, else 1. `chosen` (robots) is spare. */
-EXPORTED int list_sets_below(SetSearch *s, int64_t nodes, int64_t room, uint8_t *chosen, uint64_t *masks, double *values, int64_t *count,
-                             int64_t *progress) {
+int list_sets_below(SetSearch *s, int64_t nodes, int64_t room, uint8_t *chosen, uint64_t *masks, double *values, int64_t *count,
+                    int64_t *progress) {
     int code = PAUSED;
     int64_t stop = s->visited + nodes;
     while (code != FINISHED && s->visited < stop && *count < room) {
@@ -210,8 +202,7 @@ EXPORTED int list_sets_below(SetSearch *s, int64_t nodes, int64_t room, uint8_t 
     return code == FINISHED ? FINISHED : PAUSED;
 }
 
-/* A value that no set which is still open is below, unless it is at least the threshold. */
-EXPORTED double least_open(const SetSearch *s) {
+double least_open(const SetSearch *s) {
     double level = INFINITY;
     for (int d = 0; d <= s->depth; d++) {
         const Partial *at = s->partial + d;

@@ -2,10 +2,7 @@
 #include "team.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
-
-#include "sets.h"
 
 static const double NEGLIGIBLE = 1e-18; /* beside the diagonal: less than rounding of the eigenvalues */
 
@@ -123,8 +120,7 @@ static double larger(const Team *team, int j, const double *matrix, double large
     return fmax(largest, team->weights[j] * any_criterion(team, matrix));
 }
 
-/* Fill `before` and `before_all` of a team whose other fields are set. */
-EXPORTED void criteria_before(Team *team, double *before) {
+void criteria_before(Team *team, double *before) {
     team->before = before;
     team->before_all = 0.0;
     for (int j = 0; j < team->targets; j++) {
@@ -214,8 +210,7 @@ void values_of(const Team *team, int width, const double *sums, const double *of
     }
 }
 
-/* Values (1 << robots) of all sets, at most 16 robots; `sums` (robots + 1, targets, entries) is spare. */
-EXPORTED void all_values(const Team *team, double *values, double *sums) {
+void all_values(const Team *team, double *values, double *sums) {
     int width = team->targets * entries_of(team);
     memcpy(sums, team->prior, (size_t)width * sizeof(double));
     for (int64_t set = 0; set < (int64_t)1 << team->robots; set++) {
@@ -229,11 +224,10 @@ EXPORTED void all_values(const Team *team, double *values, double *sums) {
     }
 }
 
-EXPORTED double set_value(const Team *team, const double *sums) { return value_of(team, sums); }
+double set_value(const Team *team, const double *sums) { return value_of(team, sums); }
 
 #ifndef SOURCES
 #define SOURCES "unknown"
 #endif
 
-/* Which sources the library was compiled from. */
-EXPORTED const char *sources(void) { return SOURCES; }
+const char *sources(void) { return SOURCES; }

@@ -1,9 +1,9 @@
 /* A plan: what its robots tell about the targets, and the value of a set of them. */
-#ifndef RATT_TEAM_H
-#define RATT_TEAM_H
+#pragma once
 
 #include <stddef.h>
-#include <stdint.h>
+
+#include "sets.h"
 
 enum { TRACE = 0, LOG_DET = 1, LARGEST = 2 }; /* compiled_code of the criteria */
 enum { LARGEST_DIMENSION = 64 };
@@ -46,4 +46,26 @@ double value_of(const Team *team, const double *sums);
    added; `spare` (width). */
 void values_of(const Team *team, int width, const double *sums, const double *offset, double *values, double *spare);
 
-#endif
+/* Fill `before` and `before_all` of a team whose other fields are set. */
+EXPORTED void criteria_before(Team *team, double *before);
+/* Values (1 << robots) of all sets, at most 16 robots; `sums` (robots + 1, targets, entries) is spare. */
+EXPORTED void all_values(const Team *team, double *values, double *sums);
+/* `value_of` for a call from outside. */
+EXPORTED double set_value(const Team *team, const double *sums);
+/* Which sources the library was compiled from. */
+EXPORTED const char *sources(void);
+/* Write for each set of robots of the blocks first..last - 1 its size plus one where it is worth less than the
+   threshold, else 0; *next becomes the least value met that is not below, and *next_set its set. A set is worth no less
+   than those inside it, so whole blocks are decided by their least and their largest set. Sets that no attack leaves
+   are skipped as if they were not below: `outside` (blocks) has the fewest robots outside the block that must be blinded
+   so that its sets are left of some group; `inside` (BLOCK + 1, 1 << BLOCK) those inside it, for each choice of all but
+   the first b robots; together at most `most`. 1 where memory is short, else 0. */
+EXPORTED int mark_below(const Team *team, double threshold, int64_t first, int64_t last, const uint8_t *outside, const uint8_t *inside,
+                        int most, uint8_t *sizes, double *next, int64_t *next_set);
+/* The same from the values of all sets. */
+EXPORTED void mark_values_below(const double *values, double threshold, int64_t first, int64_t last, uint8_t *sizes, double *next,
+                                int64_t *next_set);
+/* Let every set with `robot` have at least what it has without it. */
+EXPORTED void spread(uint8_t *sizes, int64_t count, int robot);
+/* The level from which sets are not below a threshold, rounding included; infinite where no value is sure to be as high. */
+EXPORTED double level_of_threshold(const Team *team, double threshold);

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sets.h"
 #include "team.h"
 
 enum { LEAF = 4, BLOCK = 12 }; /* robots of the sets that are valued at once, and of those that one call may not split */
@@ -66,14 +65,8 @@ static void mark(Visit *v, int bit, uint64_t set, const double *sums, double lea
     mark(v, robot, set | (uint64_t)1 << robot, with, value_of(v->team, with), most);
 }
 
-/* Write for each set of robots of the blocks first..last - 1 its size plus one where it is worth less than the
-   threshold, else 0; *next becomes the least value met that is not below, and *next_set its set. A set is worth no less
-   than those inside it, so whole blocks are decided by their least and their largest set. Sets that no attack leaves
-   are skipped as if they were not below: `outside` (blocks) has the fewest robots outside the block that must be blinded
-   so that its sets are left of some group; `inside` (BLOCK + 1, 1 << BLOCK) those inside it, for each choice of all but
-   the first b robots; together at most `most`. 1 where memory is short, else 0. */
-EXPORTED int mark_below(const Team *team, double threshold, int64_t first, int64_t last, const uint8_t *outside, const uint8_t *inside,
-                        int most, uint8_t *sizes, double *next, int64_t *next_set) {
+int mark_below(const Team *team, double threshold, int64_t first, int64_t last, const uint8_t *outside, const uint8_t *inside, int most,
+               uint8_t *sizes, double *next, int64_t *next_set) {
     int bits = team->robots < BLOCK ? team->robots : BLOCK, leaf = bits < LEAF ? bits : LEAF, width = team->targets * entries_of(team);
     size_t rows = 2 * (size_t)(BLOCK + 1) + 2 + ((size_t)1 << LEAF);
     double *memory = calloc(rows * (size_t)width, sizeof(double));
@@ -109,9 +102,8 @@ EXPORTED int mark_below(const Team *team, double threshold, int64_t first, int64
     return 0;
 }
 
-/* The same from the values of all sets. */
-EXPORTED void mark_values_below(const double *values, double threshold, int64_t first, int64_t last, uint8_t *sizes, double *next,
-                                int64_t *next_set) {
+void mark_values_below(const double *values, double threshold, int64_t first, int64_t last, uint8_t *sizes, double *next,
+                       int64_t *next_set) {
     for (int64_t set = first; set < last; set++) {
         int below = values[set] < threshold;
         sizes[set] = below ? (uint8_t)(size_of((uint64_t)set) + 1) : 0;
@@ -119,8 +111,7 @@ EXPORTED void mark_values_below(const double *values, double threshold, int64_t 
     }
 }
 
-/* Let every set with `robot` have at least what it has without it. */
-EXPORTED void spread(uint8_t *sizes, int64_t count, int robot) {
+void spread(uint8_t *sizes, int64_t count, int robot) {
     int64_t step = (int64_t)1 << robot;
     for (int64_t start = 0; start < count; start += 2 * step) {
         uint8_t *without = sizes + start, *with = without + step;
