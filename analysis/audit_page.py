@@ -72,7 +72,7 @@ This page is written by commands:
 
 <!-- slow -->
 ```bash
-ratt-opt audit --out ledger
+ratt-opt audit --search-whole --out ledger
 python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/researchers/
 python -m analysis.whole_instances --ledger ledger --out docs/researchers/whole_instances.png
 python -m analysis.audit_page --ledger ledger --out docs/researchers/audit.md --figure worst_ratio.png \\

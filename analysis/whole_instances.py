@@ -1,7 +1,8 @@
 """Draw the smallest whole instances of the steps that fail, to be followed by hand.
 
-Run as ``python -m analysis.whole_instances --ledger DIR --out PICTURE``. ``DIR`` is the folder of
-``ratt-opt audit --out DIR``; every number of the picture is read from its ``audit.json``.
+Run as ``python -m analysis.whole_instances --ledger DIR --out PICTURE [--record]``. ``DIR`` is the folder of
+``ratt-opt audit --out DIR``; every number of the picture is read from its ``audit.json``. With ``--record``, the
+decisions of ``ratt-opt audit --search-whole --out DIR`` become those that later audits re-check.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING
 from ratt_audit.appendix.entry import EntryKind
 from ratt_audit.appendix.printed import numbered
 from ratt_audit.report.findings import FAILS, line_outcomes
+from ratt_opt._files import write_atomically
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,8 +23,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ratt_audit.report.records import InstanceRecord, LedgerDocument, WholeRecord
+    from ratt_audit.whole.recorded import Recorded
 
-__all__ = ["draw", "shown"]
+__all__ = ["draw", "record", "shown"]
+
+RECORD = Path(__file__).parents[1] / "ratt_audit" / "whole" / "recorded.json"
 
 BAIT, GREEDY = "#e69f00", "#0072b2"
 KEY = "Boxes: groups that A* leaves. Orange: bait. Blue: greedy. Cross: blinded. o(b1): the optimum's choice for b1."
@@ -34,6 +39,23 @@ def shown(document: LedgerDocument) -> list[WholeRecord]:
     failing = line_outcomes(document["entries"])[FAILS]
     steps = [[r for r in found if (r["label"], r["kind"]) == (label, EntryKind.STEP)] for label in failing]
     return [min(each, key=_size) for each in steps if each]
+
+
+def record(records: Sequence[WholeRecord], path: Path = RECORD) -> None:
+    """Write the decisions and the values of each instance, one line of the paper a line of text."""
+    lines = [json.dumps(_as_recorded(each), separators=(",", ":")) for each in records]
+    write_atomically(path, lambda file: file.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8"))
+
+
+def _as_recorded(one: WholeRecord) -> Recorded:
+    found = one["instance"]
+    return {
+        "label": one["label"],
+        "kind": one["kind"],
+        "worst_for": one["worst_for"],
+        "teams": [(each["team"], each["verdict"]) for each in one["teams"]],
+        "values": None if found is None else found["values"],
+    }
 
 
 def _size(record: WholeRecord) -> tuple[int, int, int]:
@@ -102,11 +124,16 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ledger", type=Path, required=True, help="folder of ratt-opt audit")
     parser.add_argument("--out", type=Path, required=True, help="picture, such as whole_instances.png")
+    parser.add_argument("--record", action="store_true", help="let later audits re-check these decisions")
     options = parser.parse_args(arguments)
     document = json.loads((options.ledger / "audit.json").read_text(encoding="utf-8"))
     records = shown(document)
     if not records:
         parser.error(f"{options.ledger} holds no whole instances: run ratt-opt audit --out {options.ledger}")
+    if options.record:
+        if not document.get("whole_searched"):
+            parser.error(f"{options.ledger} was not searched: run ratt-opt audit --search-whole --out {options.ledger}")
+        record(document["whole_instances"])
     draw(records, options.out)
     print(f"written: {options.out}")
 

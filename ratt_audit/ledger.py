@@ -28,9 +28,11 @@ from ratt_audit.real_objectives.search import search_real_objectives
 from ratt_audit.report.findings import findings
 from ratt_audit.report.pages import html_report, markdown_report, per_chain
 from ratt_audit.report.records import begun, claim_record, factor_record, real_record, whole_record
+from ratt_audit.whole.recorded import recorded_decisions
 from ratt_audit.whole.search import WholeSearch, smallest_instance
 from ratt_opt._files import output_directory, write_json, write_together
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.running.progress import Step
 from ratt_opt.solvers.ratt import bait_and_greedy
@@ -46,8 +48,9 @@ if TYPE_CHECKING:
     from ratt_audit.engine.evidence import Witness
     from ratt_audit.report.findings import Finding
     from ratt_audit.report.records import EntryRecord, LedgerDocument, OtherEntry, WholeRecord
+    from ratt_audit.whole.replay import WholeInstance
 
-__all__ = ["FILES", "Ledger", "all_entries", "decide_entry", "run_audit"]
+__all__ = ["FILES", "Ledger", "all_entries", "decide_entry", "run_audit", "whole_instance"]
 
 FILES = ("audit.json", "audit.html", "audit.md")
 """Files that :func:`run_audit` writes."""
@@ -62,7 +65,8 @@ QUICK_ROBOTS = 3
 class Ledger:
     """All records in the paper's order, as written to ``audit.json``.
 
-    ``complete`` is False when the run was interrupted; the records so far are valid.
+    ``complete`` is False when the run was interrupted; the records so far are valid. ``whole_searched`` tells whether
+    whole instances were searched; else those of an earlier search were re-checked.
     """
 
     records: tuple[EntryRecord, ...] = field(repr=False)
@@ -70,6 +74,7 @@ class Ledger:
     complete: bool
     quick: bool
     whole_instances: tuple[WholeRecord, ...] = field(default=(), repr=False)
+    whole_searched: bool = False
 
     def counts(self) -> dict[str, int]:
         """Entries per verdict."""
@@ -94,6 +99,7 @@ class Ledger:
             "seconds": self.seconds,
             "entries": list(self.records),
             "whole_instances": list(self.whole_instances),
+            "whole_searched": self.whole_searched,
         }
 
 
@@ -188,6 +194,7 @@ def run_audit(
     out: str | Path,
     *,
     quick: bool = False,
+    search_whole: bool = False,
     progress: Callable[[int, int, str], object] | None = None,
     time_limit: float | None = None,
     budget: Budget | None = None,
@@ -200,6 +207,7 @@ def run_audit(
     ----------
     out : folder, created if needed
     quick : only the sizes that take seconds
+    search_whole : search whole instances (ten minutes) instead of re-checking those of an earlier search
     progress : called with (entries done, entries in all, label) before each entry
     time_limit : seconds; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
@@ -215,7 +223,7 @@ def run_audit(
     with suppress(OutOfBudget), paced(own):
         _decide_all(own, entries, records, quick=quick, progress=progress)
         if not quick and own.stop() is None:
-            _decide_whole(own, entries, records, whole)
+            _decide_whole(own, entries, records, whole, searches=search_whole)
     complete = bool(entries) and len(records) == len(entries) and own.stop() is None
     _add_other_verdicts(entries[: len(records)], records)
     ledger = Ledger(
@@ -224,6 +232,7 @@ def run_audit(
         complete=complete,
         quick=quick,
         whole_instances=tuple(whole),
+        whole_searched=search_whole,
     )
     document = ledger.document()
     html, markdown = html_report(document), markdown_report(document)
@@ -272,17 +281,59 @@ def refuted_lines(entries: Sequence[Entry], records: Sequence[EntryRecord]) -> d
     return lines
 
 
-def decide_whole_line(readings: Sequence[ClaimEntry], worst_for: Side, search: WholeSearch) -> WholeRecord:
-    """Decide one refuted line among whole instances in which A* is a worst attack on the plan of ``worst_for``."""
+def decide_whole_line(
+    readings: Sequence[ClaimEntry], worst_for: Side, search: WholeSearch, *, searches: bool
+) -> WholeRecord:
+    """Decide one refuted line among whole instances in which A* is a worst attack on the plan of ``worst_for``.
+
+    ``searches`` : else an earlier search's decision is re-checked, if there is one.
+    """
+    first, cases, known = readings[0], _broken(readings), None
+    if not searches:
+        known = recorded_decisions(
+            first.label, first.kind.value, first.chain, cases, worst_for=worst_for, search=search
+        )
+    if known is None:
+        known = smallest_instance(first.chain, cases, worst_for, search)
+    return whole_record(first, worst_for.value, known)
+
+
+def whole_instance(label: str, worst_for: Side, *, kind: EntryKind = EntryKind.STEP) -> WholeInstance:
+    """Return the smallest known whole instance on which a line of the appendix fails, re-checked.
+
+    ``label`` : the paper's, such as ``nd_p1d2v1_8``; ``worst_for`` : whose worst attack A* is.
+
+    Raises
+    ------
+    InputError : none is known.
+    """
+    readings = [e for e in all_entries() if isinstance(e, ClaimEntry) and (e.label, e.kind) == (label, kind)]
+    known = None
+    if readings:
+        chain_of = readings[0].chain
+        known = recorded_decisions(
+            label, kind.value, chain_of, _broken(readings), worst_for=worst_for, search=WholeSearch()
+        )
+    found = known[-1].instance if known else None
+    if found is None:
+        raise InputError("label", "must be of a line with a known whole instance", label)
+    return found
+
+
+def _broken(readings: Sequence[ClaimEntry]) -> tuple[SizedClaim, ...]:
+    """Sizes of a line that are refuted, once each."""
     sizes = (sized for entry in readings for sized in entry.claims)
     broken = (sized for sized in sizes if decide(sized.claim).verdict is Verdict.REFUTED)
-    cases = {(sized.team, sized.attacked, sized.claim.conclusion): sized for sized in broken}
-    first = readings[0]
-    return whole_record(first, worst_for.value, smallest_instance(first.chain, cases.values(), worst_for, search))
+    return tuple({(sized.team, sized.attacked, sized.claim.conclusion): sized for sized in broken}.values())
 
 
 def _decide_whole(
-    budget: Budget, entries: Sequence[Entry], records: Sequence[EntryRecord], whole: list[WholeRecord]
+    budget: Budget,
+    entries: Sequence[Entry],
+    records: Sequence[EntryRecord],
+    whole: list[WholeRecord],
+    *,
+    searches: bool,
 ) -> None:
     """Fill in what whole instances say of the refuted lines, as far as time allows; raises ``OutOfBudget``."""
     try:
@@ -291,7 +342,7 @@ def _decide_whole(
                 for side in Side:
                     budget.check()
                     step.say(f"{label}, A* worst for {side.value}")
-                    whole.append(decide_whole_line(readings, side, WholeSearch()))
+                    whole.append(decide_whole_line(readings, side, WholeSearch(), searches=searches))
     except KeyboardInterrupt:
         budget.interrupt()
 

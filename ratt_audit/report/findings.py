@@ -45,7 +45,7 @@ def findings(document: LedgerDocument) -> tuple[Finding, ...]:
         _theorems(records),
         _lines(records),
         _readings(records),
-        _whole(document.get("whole_instances", [])),
+        _whole(document.get("whole_instances", []), searched=document.get("whole_searched", True)),
         _repairs(records),
         _misprints(records),
         _own_claims(records),
@@ -160,7 +160,7 @@ WHOLE = "Which lines fail in whole instances?"
 NO_INSTANCE = "holds in whole instances"
 
 
-def _whole(records: Sequence[WholeRecord]) -> Finding:
+def _whole(records: Sequence[WholeRecord], *, searched: bool) -> Finding:
     """Refuted lines on whole instances: the smallest one for each plan whose worst attack A* may be."""
     sides = list(dict.fromkeys(record["worst_for"] for record in records))
     table = [("line", *(f"A* is a worst attack on {side}" for side in sides))]
@@ -172,8 +172,13 @@ def _whole(records: Sequence[WholeRecord]) -> Finding:
         "programs and re-checked by the exact attack and by enumerating all plans."
     )
     counts = [_failing_steps(records, side) for side in sides]
-    tail = "Teams that the table does not name were not decided."
-    return Finding(heading=WHOLE, sentences=(text, *counts, tail), table=tuple(table))
+    tail = ["Teams that the table does not name were not decided."]
+    if not searched and records:
+        tail.append(
+            "This run re-checked the instances of an earlier search; its verdicts on smaller teams are as that search "
+            "left them, which ratt-opt audit --search-whole repeats."
+        )
+    return Finding(heading=WHOLE, sentences=(text, *counts, *tail), table=tuple(table))
 
 
 def _by_line(records: Sequence[WholeRecord]) -> dict[tuple[str, str], dict[str, WholeRecord]]:

@@ -197,7 +197,10 @@ class WholeRecord(TypedDict):
 
 
 class LedgerDocument(TypedDict):
-    """The whole file; older and quick ones lack ``whole_instances``."""
+    """The whole file; older and quick ones lack ``whole_instances``.
+
+    ``whole_searched`` : whether these were searched in this run, or re-checked from an earlier search.
+    """
 
     format: str
     complete: bool
@@ -207,6 +210,7 @@ class LedgerDocument(TypedDict):
     seconds: float
     entries: list[EntryRecord]
     whole_instances: NotRequired[list[WholeRecord]]
+    whole_searched: NotRequired[bool]
 
 
 def begun(entry: Entry, verdict: Verdict, decided_by: str) -> EntryRecord:

@@ -12,6 +12,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import ProofError
 from ratt_opt.problem import Attack, Problem
+from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.ratt import ratt
 
@@ -54,8 +55,6 @@ class WholeInstance:
 
 
 def _problem(whole: WholeTeam, values: tuple[int, ...]) -> Problem:
-    from ratt_opt.setfunctions.base import TableFunction
-
     table = TableFunction([float(v) for v in values])
     return Problem(table, np.array(whole.team.ground.owner), None, whole.alpha_s, whole.alpha_c)
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     Node = tuple[Inequality, ...]
 
-__all__ = ["Decided", "WholeSearch", "decide_team", "smallest_instance"]
+__all__ = ["Decided", "WholeSearch", "decide_team", "on_whole_team", "ordered_teams", "smallest_instance"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,10 +65,9 @@ def smallest_instance(
     chain: str, sizes: Iterable[SizedClaim], worst_for: Side, search: WholeSearch
 ) -> tuple[Decided, ...]:
     """Decide a line on whole teams, smallest first, until an instance refutes it."""
-    teams = ((sized, whole) for sized in sizes for whole in whole_teams(chain, sized, largest=search.largest))
     decided: list[Decided] = []
     left = search.programs_in_all
-    for sized, whole in sorted(teams, key=lambda pair: pair[1].size):
+    for sized, whole in ordered_teams(chain, sizes, search.largest):
         decided.append(decide_team(sized, whole, worst_for, replace(search, programs=min(left, search.programs))))
         left -= decided[-1].programs
         if decided[-1].instance is not None or left <= 0:
@@ -76,9 +75,15 @@ def smallest_instance(
     return tuple(decided)
 
 
+def ordered_teams(chain: str, sizes: Iterable[SizedClaim], largest: int) -> list[tuple[SizedClaim, WholeTeam]]:
+    """Whole teams of a line with at most ``largest`` robots, smallest first: the order of the search."""
+    teams = ((sized, whole) for sized in sizes for whole in whole_teams(chain, sized, largest=largest))
+    return sorted(teams, key=lambda pair: pair[1].size)
+
+
 def decide_team(sized: SizedClaim, whole: WholeTeam, worst_for: Side, search: WholeSearch) -> Decided:
     """Decide one line on one whole team."""
-    claim, needed = _on_whole_team(sized, whole), tuple(requirements(whole, worst_for))
+    claim, needed = on_whole_team(sized, whole), tuple(requirements(whole, worst_for))
     nodes: list[Node] = [()]
     is_proved, solved = True, 0
     while nodes and solved < search.programs:
@@ -104,8 +109,8 @@ def _is_closed(node: Claim) -> bool:
     return all(find_proof(node, feasible=False, curvature=c) is not None for c in curvatures_tried(node))
 
 
-def _on_whole_team(sized: SizedClaim, whole: WholeTeam) -> Claim:
-    """The line on the elements of the whole team, from RATT's choices alone."""
+def on_whole_team(sized: SizedClaim, whole: WholeTeam) -> Claim:
+    """Return the line on the elements of the whole team, from RATT's choices alone."""
     assert sized.team is not None
     conclusion = _renamed(sized.claim.conclusion, sized.team.ground, whole.team.ground)
     return whole.team.claim(sized.claim.function_class, conclusion)

@@ -106,6 +106,12 @@ def _about(given: str, made_from: str | None) -> str:
 def audit(
     out: OutFolder,
     quick: Annotated[bool, typer.Option("--quick", help="Only the sizes that take seconds.")] = False,
+    search_whole: Annotated[
+        bool,
+        typer.Option(
+            "--search-whole", help="Search whole instances anew (ten minutes) instead of re-checking known ones."
+        ),
+    ] = False,
     as_json: JsonFlag = False,
     as_latex: LatexFlag = False,
 ) -> None:
@@ -117,7 +123,7 @@ def audit(
     from ratt_opt.report.tables import audit_table
 
     check_output(as_json=as_json, as_latex=as_latex)
-    ledger = run_audit(out, quick=quick)
+    ledger = run_audit(out, quick=quick, search_whole=search_whole)
     files = [str(out / name) for name in FILES]
     if as_json:
         kept = {name: value for name, value in ledger.document().items() if name in SUMMARY}

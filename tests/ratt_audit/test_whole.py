@@ -11,12 +11,14 @@ from ratt_audit.appendix.entry import ClaimEntry, EntryKind, entries_of
 from ratt_audit.appendix.patterns import pattern1_chains, submodular_chains
 from ratt_audit.appendix.roles import Side
 from ratt_audit.engine.decide import Verdict, decide
-from ratt_audit.whole.search import WholeSearch, decide_team, smallest_instance
+from ratt_audit.ledger import whole_instance
+from ratt_audit.whole.recorded import rechecked, recorded_lines
+from ratt_audit.whole.search import WholeSearch, decide_team, ordered_teams, smallest_instance
 from ratt_audit.whole.teams import whole_teams
-from ratt_opt import TableFunction, find_monotonicity_violation, find_submodularity_violation
+from ratt_opt import InputError, ProofError, TableFunction, find_monotonicity_violation, find_submodularity_violation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from ratt_audit.whole.replay import WholeInstance
 
@@ -83,10 +85,14 @@ def check_is_whole(found: WholeInstance) -> None:
     assert find_monotonicity_violation(function) is None
 
 
-@pytest.mark.parametrize("side", list(Side))
 @pytest.mark.parametrize(
-    ("label", "smaller", "team"),
-    [("nd_p1d2v1_8", (3, 1, 2), (4, 1, 4)), ("sub_p2d1v1_10", None, (4, 1, 4))],
+    ("label", "smaller", "team", "side"),
+    [
+        ("nd_p1d2v1_8", (3, 1, 2), (4, 1, 4), Side.OPTIMUM),
+        pytest.param("nd_p1d2v1_8", (3, 1, 2), (4, 1, 4), Side.RATT, marks=pytest.mark.slow),
+        ("sub_p2d1v1_10", None, (4, 1, 4), Side.RATT),
+        ("sub_p2d1v1_10", None, (4, 1, 4), Side.OPTIMUM),
+    ],
 )
 def test_a_step_that_fails_does_so_in_a_whole_instance(
     label: str, smaller: tuple[int, int, int] | None, team: tuple[int, int, int], side: Side
@@ -113,6 +119,46 @@ def test_a_greedy_robot_blinded_in_the_third_distribution_breaks_its_sixth_line(
     assert found is not None
     assert found.whole.size == (4, 2, 3)
     check_is_whole(found)
+
+
+FAILING = ("nd_p1d2v1_8", "nd_p1d3v1_6", "sub_p2d1v1_10")
+
+
+@pytest.mark.parametrize("side", list(Side))
+@pytest.mark.parametrize("label", FAILING)
+def test_the_recorded_instances_are_whole(label: str, side: Side) -> None:
+    check_is_whole(whole_instance(label, side))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "fault"),
+    [
+        (lambda v: v[:-1], "15 values|values for"),
+        (lambda v: [0] * len(v), "does not break the claim"),
+        (lambda v: [-x for x in v], "."),
+        (lambda v: [*v[:-1], v[-1] * 9], "."),
+    ],
+)
+def test_a_recorded_instance_that_is_none_is_refused(spoil: Callable[[list[int]], list[int]], fault: str) -> None:
+    sized = step("sub_p2d1v1_10").claims[0]
+    line = next(r for r in recorded_lines() if (r["label"], r["worst_for"]) == ("sub_p2d1v1_10", Side.RATT.value))
+    (team,) = [w for _, w in ordered_teams("sub_p2d1v1", [sized], 5) if w.text() == line["teams"][-1][0]]
+    values = line["values"]
+    assert values is not None
+    rechecked(sized, team, Side.RATT, values, WholeSearch())
+    with pytest.raises(ProofError, match=fault):
+        rechecked(sized, team, Side.RATT, spoil(values), WholeSearch())
+
+
+def test_of_other_lines_no_instance_is_known() -> None:
+    for label in ("nd_p1d1v1_1", "no such line"):
+        with pytest.raises(InputError, match="label must be of a line with a known whole instance"):
+            whole_instance(label, Side.RATT)
+
+
+def test_each_line_that_fails_is_recorded_for_both_attacks() -> None:
+    sides = {label: {r["worst_for"] for r in recorded_lines() if r["label"] == label} for label in FAILING}
+    assert sides == {label: {side.value for side in Side} for label in FAILING}
 
 
 @pytest.mark.slow
