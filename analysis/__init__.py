@@ -15,7 +15,7 @@ INTERRUPTED = 130
 
 
 def _end(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
-    """What nothing catches: of an interrupt one line, all else as Python shows it."""
+    """Print an uncaught error: one line for an interrupt, all else as Python shows it."""
     if not _is_interrupt(error):
         sys.__excepthook__(kind, error, traceback)
         return
@@ -24,7 +24,7 @@ def _end(kind: type[BaseException], error: BaseException, traceback: TracebackTy
 
 
 def _is_interrupt(error: BaseException | None) -> bool:
-    """Whether an interrupt is what an error, such as that of an import it broke off, comes from."""
+    """Tell whether an error comes from an interrupt, such as that of an import it broke off."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None

@@ -27,7 +27,7 @@ __all__ = ["Room", "rooms"]
 
 ROOT = Path(__file__).parents[1]
 FLOW = ("scenario", "problem", "plan", "attack", "bracket,\ncertificate", "report")
-"""What becomes of a user's input, in order."""
+"""Stages of a user's input, in order."""
 WIDTH = 82
 """Characters of a line beside a room's name."""
 HOUSE, ROOM, ARROW, FLOWS = "#1f2937", "#eef2f7", "#64748b", "#0f5f8f"

@@ -39,7 +39,7 @@ GRID = tuple((10, 15, alpha_s, alpha_c) for alpha_c in (9, 12, 16, 20, 24, 28, 3
 
 LARGE = ((20, 20, 6, 47), (20, 20, 10, 63), (30, 25, 10, 108), (30, 25, 15, 145))
 SPARSE = ((10, 15, 2, 5, 4.0), (10, 15, 3, 8, 4.0), (30, 25, 5, 10, 6.0), (30, 25, 10, 20, 6.0))
-"""As above, and the mean number of links a robot has: robots within a range are linked."""
+"""Cases of sparse graphs, and the mean number of links of a robot: robots within a range are linked."""
 
 LARGEST_SPLIT = 12
 """Most robots for which the attacks that minimise the largest group are searched."""
@@ -141,7 +141,7 @@ def grid(runs: list[dict[str, object]]) -> list[dict[str, object]]:
 
 
 def conclusion(title: str, runs: list[dict[str, object]]) -> str:
-    """What the runs say, in one line."""
+    """Summarise the runs in one line."""
     said = []
     for name in used(runs):
         shares = share(runs, name)

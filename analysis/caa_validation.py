@@ -79,7 +79,7 @@ def other_graphs(n_robots: int, n_graphs: int) -> list[dict[str, object]]:
 
 
 def conclusions(complete: list[dict[str, object]], others: list[dict[str, object]]) -> list[str]:
-    """What the tables say, a line each."""
+    """Summarise the tables, a line each."""
 
     def total(rows: list[dict[str, object]], name: str) -> int:
         return sum(int(str(row[name])) for row in rows)

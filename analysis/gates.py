@@ -1,4 +1,4 @@
-"""What the gate is worth: ``python -m analysis.gates [MRCLAM FOLDER]``.
+"""Gain from the gate: ``python -m analysis.gates [MRCLAM FOLDER]``.
 
 Ranges of ultra-wideband anchors to a moving tag, 10 % of them metres too long (reflections, as in the libRSF data), and
 sightings of MRCLAM's landmarks with misread labels: error of the tracker with the gate and without.

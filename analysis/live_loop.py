@@ -23,9 +23,9 @@ from ratt_opt.missions.sensing import simulated_readings
 from ratt_opt.missions.world import MissionModel, World
 
 PERIOD = 0.1
-"""Of a step [s]."""
+"""Period of a step [s]."""
 SHARE = 0.7
-"""Of the period, for the tracker's step; the rest is for both ends of the pipe."""
+"""Share of the period for the tracker's step; the rest is for both ends of the pipe."""
 
 
 def team(seed: int) -> Scenario:

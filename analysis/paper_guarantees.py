@@ -1,4 +1,4 @@
-"""What RATT is guaranteed at the paper's budgets, old bounds beside new: ``python -m analysis.paper_guarantees``.
+"""Guarantees of RATT at the paper's budgets, old bounds beside new: ``python -m analysis.paper_guarantees``.
 
 Prints a Markdown table: one scenario of the paper's kind (seed 0) a budget, shares of the optimum known before any
 search for it, rounded down. ``g`` is the largest group of unblinded robots that an attack can be held to.

@@ -2,9 +2,8 @@
 
 It prints one line a finding, ``FILE:LINE: what to write instead``, and returns 1 if there are any. The word list is
 ``analysis/words.toml``. Besides, it counts words and conditions: a sentence has at most 40 words and two conditions.
-A docstring, private ones too, and a comment begin with an imperative or a noun phrase, in the families of ``PLAIN``.
-Without arguments it reads every page and notebook, and every Python file of the package and of the studies. In
-families that the engine issues rewrite it reads what users meet: messages, and the docstrings of public names.
+A docstring, private ones too, and a comment begin with an imperative or a noun phrase.
+Without arguments it reads every page and notebook, and every Python file of the package and of the studies.
 """
 
 from __future__ import annotations
@@ -30,13 +29,6 @@ LONGEST = 40
 """Words of a sentence."""
 CONDITIONS = 2
 """Conditions of a sentence; one of them may be its subject's."""
-LATER = ("ratt_opt/attackers", "ratt_opt/certificates")
-"""Families that the engine issues rewrite."""
-PLAIN = tuple(
-    [f"ratt_opt/{family}" for family in ("bounds", "cli", "coordinates", "interop", "studies", "worst_ratio")]
-    + ["ratt_audit", "analysis/prose.py"]
-)
-"""Families whose docstrings and comments begin as complete phrases. The others follow; then this list goes."""
 PAGES = ("README.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs", "paper")
 MADE = ("api", "gallery", "notebooks", "schemas")
 """Folders of docs that building the site writes."""
@@ -117,13 +109,13 @@ def findings(files: Iterable[Path]) -> Iterator[Finding]:
             yield from _in_words(passage, shown, words)
             if passage.sentences:
                 yield from _in_sentences(passage, shown)
-        if file.suffix == ".py" and any(file.is_relative_to(ROOT / name) for name in PLAIN):
+        if file.suffix == ".py":
             yield from fragments(file.read_text(encoding="utf-8"), shown)
 
 
 def fragments(text: str, shown: Path) -> Iterator[Finding]:
     """Yield the docstrings and comments of a module that begin with a fragment."""
-    begun = [(constant.lineno, str(constant.value)) for constant, _ in _docstrings(ast.parse(text))]
+    begun = [(constant.lineno, str(constant.value)) for constant in _docstrings(ast.parse(text))]
     found = [(line, fragment[0]) for line, said in begun if (fragment := FRAGMENT.match(said))]
     before = -1
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
@@ -182,33 +174,22 @@ def _of_page(file: Path, text: str) -> Iterator[Passage]:
 def _of_code(file: Path, text: str) -> Iterator[Passage]:
     """Docstrings, and other strings of at least two words."""
     tree = ast.parse(text)
-    later = any(file.is_relative_to(ROOT / name) for name in LATER)
-    public = _public_names() if later else frozenset()
-    documented: set[ast.AST] = set()
-    for constant, name in _docstrings(tree):
-        documented.add(constant)
-        if not later or name in public:
-            yield Passage(file, constant.lineno, str(constant.value), sentences=True)
+    documented = list(_docstrings(tree))
+    for constant in documented:
+        yield Passage(file, constant.lineno, str(constant.value), sentences=True)
     for node in ast.walk(tree):
         said = node.value if isinstance(node, ast.Constant) and node not in documented else None
         if isinstance(said, str) and len(re.findall(r"[A-Za-z]{2,}", said)) >= 2 and "\\" not in said:
             yield Passage(file, getattr(node, "lineno", 1), said, sentences=False)
 
 
-def _docstrings(node: ast.Module | ast.stmt, outermost: str = "") -> Iterator[tuple[ast.Constant, str]]:
-    """Docstrings, and strings below assignments, with the name at the top of the module that they belong to."""
-    before = None
+def _docstrings(node: ast.Module | ast.stmt) -> Iterator[ast.Constant]:
+    """Yield docstrings, and strings below assignments."""
     for statement in getattr(node, "body", []):
         value = statement.value if isinstance(statement, ast.Expr) else None
         if isinstance(value, ast.Constant) and isinstance(value.value, str):
-            yield value, outermost or str(getattr(getattr(before, "target", None), "id", ""))
-        yield from _docstrings(statement, outermost or getattr(statement, "name", ""))
-        before = statement
-
-
-def _public_names() -> frozenset[str]:
-    stub = (ROOT / "ratt_opt" / "__init__.pyi").read_text(encoding="utf-8")
-    return frozenset(re.findall(r" as (\w+)", stub))
+            yield value
+        yield from _docstrings(statement)
 
 
 def _in_words(passage: Passage, shown: Path, words: Iterable[tuple[re.Pattern[str], str]]) -> Iterator[Finding]:

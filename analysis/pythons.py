@@ -32,9 +32,9 @@ SAMPLE = (
     "tests/test_package.py", "tests/test_problem.py", "tests/test_rounding.py", "tests/cli", "tests/certificates",
     "tests/scenario", "tests/setfunctions", "tests/solvers/test_ratt.py", "tests/attackers/test_exact.py",
 )  # fmt: skip
-"""What touches the dependencies: compiled loops, solvers, exact arithmetic, files, figures, the command line."""
+"""Tests that touch the dependencies: compiled loops, solvers, exact arithmetic, files, figures, the command line."""
 COPIED = ("tests", "analysis", "docs", "README.md", "pyproject.toml")
-"""What the tests need besides the installed wheel."""
+"""Files that the tests need besides the installed wheel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Environment:
 
     @property
     def name(self) -> str:
-        """As in ``--only``."""
+        """Name of the environment, as in ``--only``."""
         return f"{self.python}-oldest" if self.oldest else self.python
 
 

@@ -94,7 +94,7 @@ class Row:
 
     @property
     def status(self) -> str:
-        """Where the ratio comes from."""
+        """Source of the ratio: proved, computed, or open."""
         if self.known.attained:
             return "proved"
         if self.found is not None and self.found.exact_lower == self.found.exact_upper:
@@ -128,7 +128,7 @@ def budgets(n_robots: int) -> list[Budget]:
 
 
 def row_of(family: str, budget: Budget, curvature: Fraction = CURVATURE) -> Row:
-    """What is known of one set of budgets; computed if no written proof settles it."""
+    """Return the known ratio of one set of budgets; it is computed if no written proof settles it."""
     alpha_s, alpha_c = budget.members[0]
     known = known_ratio(_question(family, budget.n_robots, alpha_s, alpha_c, curvature))
     found = None
@@ -140,7 +140,7 @@ def row_of(family: str, budget: Budget, curvature: Fraction = CURVATURE) -> Row:
 
 
 def coverage(family: str, rows: Sequence[Row]) -> tuple[str, ...]:
-    """How many budgets of one team size are settled in which way."""
+    """Count the budgets of one team size by the way in which they are settled."""
     counts = {
         name: sum(len(r.budget.members) for r in rows if r.status == name) for name in ("proved", "computed", "open")
     }

@@ -31,7 +31,7 @@ PAGES = (
     "docs/researchers/ratios.md",
     "README.md",
 )
-"""In this order, and in one folder: a page may show what an earlier one's commands have written."""
+"""Pages, run in this order and in one folder: a page may show what an earlier one's commands have written."""
 FIGURE = re.compile(r"<!-- figure: (?P<file>\S+) -->\n!\[.*?\]\((?P<path>\S+?)\)", re.S)
 
 

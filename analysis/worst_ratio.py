@@ -115,7 +115,7 @@ def draw(points: Sequence[Point]) -> Figure:
 
 
 COLOURS = [PLANNERS[name].colour for name in ("maxmin", "ratt", "greedy", "nonrobust", "myopic")]
-"""As the cases are drawn: each narrower than the one before, so that equal curves lie inside one another."""
+"""Colours in the order of drawing: each curve is narrower than the last, so that equal ones lie in one another."""
 
 
 def _panel(axis: Axes, points: Sequence[Point]) -> None:

@@ -61,7 +61,7 @@ SPARSE = ((20, 6, 5, 10), (30, 6, 5, 10), (30, 6, 10, 20), (30, 10, 10, 30), (40
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cases:
-    """Which attacks to time: every budget of each team size, each objective and seed."""
+    """Attacks to time: every budget of each team size, each objective and seed."""
 
     robots: tuple[int, ...]
     objectives: tuple[str, ...]

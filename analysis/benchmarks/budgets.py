@@ -80,7 +80,7 @@ def budget_grid(robots: int, steps: int) -> list[tuple[int, int]]:
 
 
 def prepare(case: Case) -> tuple[Problem, Any]:
-    """What comes before the clock starts: the problem, and RATT's plan if that is attacked."""
+    """Return the inputs made before the clock starts: the problem, and RATT's plan if that is attacked."""
     problem = case.problem()
     return problem, ro.ratt(problem).elements if case.what == "attack" else None
 

@@ -66,7 +66,7 @@ def every_row(rows: list[dict[str, Any]], seconds: float) -> list[dict[str, obje
 
 
 def both_directions(rows: list[dict[str, Any]], seconds: float) -> list[dict[str, object]]:
-    """Whether ``n_max(k*) <= r < n_max(k* - 1)`` for rows without weights, k* the fewest cuts."""
+    """Test whether ``n_max(k*) <= r < n_max(k* - 1)`` for rows without weights, k* the fewest cuts."""
     found = []
     for row in rows:
         if "weights" in row:
@@ -126,7 +126,7 @@ def sizes_of(name: str, graph: nx.Graph, cuts: list[int], seconds: float) -> lis
 
 
 def by_shares(name: str, graph: nx.Graph, seconds: float) -> list[dict[str, object]]:
-    """The same for the shares of the links in ``SHARES``."""
+    """Measure the smallest largest group for the shares of the links in ``SHARES``."""
     return sizes_of(name, graph, [round(share * graph.number_of_edges()) for share in SHARES], seconds)
 
 

@@ -45,7 +45,7 @@ def team(robots: int, targets: int, network: str, seed: int) -> Any:
 
 
 def measure(problem: Problem, seconds: float, *, certified: bool) -> dict[str, Any]:
-    """How much stays open, the seconds, and RATT's worst case as a share of the best one."""
+    """Measure the open gap, the seconds, and RATT's worst case as a share of the best one."""
     began = process_time()
     found = solve_maxmin(problem, gap=CLOSED, time_limit=seconds)
     row: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""Only the coordinates that are measured: tracks of positions and velocities whose sensors tell positions alone.
+"""Measured coordinates alone: tracks of positions and velocities whose sensors measure positions only.
 
 Run as ``python -m analysis.benchmarks.measured_coordinates [--robots 10 20] [--objectives ...] [--seeds 3]
 [--time-limit 10]``. Both columns hold the best plan of the same problem: searched in all four coordinates, and in the

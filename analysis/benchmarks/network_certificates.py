@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
 BUILT, CHECKED = 1e-11, 2e-11
-"""By how much less than the attacker's lower end is built and proved, relative."""
+"""Relative amounts by which the lower bounds built and proved are below the attacker's."""
 
 
 def measured(problem: Problem, seconds: float) -> dict[str, object]:

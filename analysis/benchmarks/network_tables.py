@@ -49,7 +49,7 @@ def network_table(rows: list[Row]) -> str:
 
 
 def summary(rows: list[Row], within: float) -> str:
-    """How many rows are closed, how many within the target; each of the others; plain annealing if it was run."""
+    """Count the rows that are closed and within the target; list the others, and plain annealing if it was run."""
     open_rows = [row for row in rows if row["stop"] not in DONE]
     over = [row for row in open_rows if float(row["gap"]) > within]
     text = f"{len(rows) - len(open_rows)} of {len(rows)} closed, {len(rows) - len(over)} within {100 * within:g} %"

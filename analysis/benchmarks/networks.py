@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 TARGETS = {24: 25, 30: 25, 50: 30, 100: 100}
 SHARES = {"fifth": (0.2, 0.15), "third": (1 / 3, 0.3), "random": None}
-"""Of the robots blinded and of the links cut; ``None`` draws both up to twice a third of them."""
+"""Shares of the robots blinded and of the links cut; ``None`` draws both up to twice a third of them."""
 GAP = 1e-6
 """Names a max-min search."""
 WARM, WARM_LARGE = 24, 64

@@ -29,7 +29,7 @@ __all__ = ["RivalBracket", "exchanges", "scenario_milp"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RivalBracket:
-    """What a rival has after its processor seconds: the worst case of its plan, and the bound that it claims."""
+    """Bracket of a rival after its processor seconds: the worst case of its plan, and the bound that it claims."""
 
     lower: float
     upper: float

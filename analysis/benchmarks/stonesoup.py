@@ -204,7 +204,7 @@ def _interval(values: np.ndarray) -> float:
 
 
 def speeds() -> list[dict[str, Any]]:
-    """What the adapter and the model-free input cost, beside what they are measured against."""
+    """Time the adapter and the model-free input, beside what they are compared with."""
     rows: list[dict[str, Any]] = []
     rng = np.random.default_rng(2)
     states = rng.uniform([0, -1, 0, -1], [SIDE, 1, SIDE, 1], (8, 4))

@@ -71,7 +71,7 @@ def measure(scenario: Scenario, name: str, steps: int, gap: float) -> dict[str, 
 
 
 def leaves_that_close(problem: Problem, proof: UpperProof, level: float, gap: float) -> FloatArray:
-    """How far, relative to ``level``, each leaf of an earlier proof is from closing: at most ``gap`` if it does.
+    """Return the excess of each leaf of an earlier proof, relative to ``level``: if at most ``gap``, it closes.
 
     The cuts touch where they did, and leaves keep their weights.
     """
@@ -97,7 +97,7 @@ def _solved(problem: Problem, gap: float) -> MaxMinResult:
 
 
 def measure_leaves(scenario: Scenario, name: str, steps: int, gap: float) -> list[dict[str, Any]]:
-    """What the proof of each step still proves of the next one."""
+    """Measure what the proof of each step still proves of the next one."""
     before, rows = _solved(scenario.problem(name), gap), []
     for step in range(steps):
         earlier = scenario.problem(name)

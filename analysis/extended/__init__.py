@@ -1,1 +1,1 @@
-"""What the paper could not show: ``python -m analysis.extended --trials T --out DIR``."""
+"""Extension of the paper's evaluation: ``python -m analysis.extended --trials T --out DIR``."""

@@ -1,4 +1,4 @@
-"""What the extended study decides, with the same tests as the paper's claims."""
+"""Claims of the extended study, decided by the same tests as the paper's claims."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a case is run: in this process, timed, and every surprise noted as a fault."""
+"""Runs of cases: in this process, timed, and every surprise noted as a fault."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ def start_clock() -> None:
 
 
 def hang(*_: object) -> None:
-    """What the alarm clock does to a case that takes too long."""
+    """Stop a case that takes too long; the alarm clock calls this."""
     raise _HangError
 
 

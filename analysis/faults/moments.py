@@ -50,7 +50,7 @@ class Square(ro.SetFunction):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Moment:
-    """How a search came back: its result or what it raised, and seconds of the processor since the interrupt.
+    """Outcome of an interrupted search: its result or error, and seconds of the processor since the interrupt.
 
     ``seconds`` is ``None`` if it was back before the interrupt.
     """
@@ -85,7 +85,7 @@ def interrupted_after(search: Callable[[], Any], delay: float) -> Moment:
 
 
 def is_answered(moment: Moment) -> bool:
-    """Whether the search said that it was interrupted, with a bracket, or was back before."""
+    """Tell whether the search returned a bracket as interrupted, or ended before the interrupt."""
     if moment.seconds is None:
         return moment.raised is None
     return moment.raised is None and all(map(_is_bracket, _results(moment.found)))

@@ -1,4 +1,4 @@
-"""What must hold of a folder of results, whatever became of the run that wrote into it."""
+"""Checks of a folder of results, however the run ended that wrote into it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a problem that a certificate states is truly worth: by definition, all plans under all attacks.
+"""True value of a problem that a certificate states: by definition, all plans under all attacks.
 
 Shares nothing with the library, whose searches refuse some of what a file may state (a weight of 5e-324, say): exact
 fractions for matrices of two coordinates, balls of ``BITS`` bits for roots and logarithms.
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["truth"]
 
 BITS = 4096
-"""Of the balls: more than lies between the smallest and the largest float."""
+"""Bits of the balls: more than lie between the smallest and the largest float."""
 
 Matrix = tuple[fmpq, fmpq, fmpq]
 """Lower triangle of a symmetric matrix of two rows."""

@@ -1,1 +1,1 @@
-"""What the searches answered on a fixed corpus, and what they answer now: so that they can be rebuilt safely."""
+"""Golden corpus: the recorded answers of the searches, compared with today's, so that they can be rebuilt safely."""

@@ -1,4 +1,4 @@
-"""What each stage and each bound of the engine is worth: a part of the corpus without one of them after the other.
+"""Ablation: the loss on a part of the corpus without each stage and each bound of the engine, one after the other.
 
 Run as ``python -m analysis.golden.ablation [--seconds 4] [--cases 16] [--only NAME ...] [--workers K] [--twice]
 [--folder build/ablation]``. From networks, complete graphs and best plans that many cases each are taken that took
@@ -43,7 +43,7 @@ def measured_without(name: str, part: str, case: str, turn: int, seconds: float)
 
 
 def chosen(parts: list[str], count: int, rows: Rows) -> list[tuple[str, str]]:
-    """That many cases of each part, evenly over those that took long."""
+    """Choose ``count`` cases of each part, evenly over those that took long."""
     keys: list[tuple[str, str]] = []
     for part in parts:
         long = [key for key, row in rows.items() if key[0] == part and float(row["cpu_s"]) >= LONG]

@@ -1,4 +1,4 @@
-"""What the searches answer on one case of the corpus: both ends, nodes, processor seconds, and the proof's size."""
+"""Answers of the searches on one case of the corpus: both ends, nodes, processor seconds, and the proof's size."""
 
 from __future__ import annotations
 

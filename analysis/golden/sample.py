@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 __all__ = ["sample"]
 
 TIMES = 3.0
-"""Of a recorded run's seconds that a case takes, with what is not timed of it."""
+"""Seconds that a case takes, untimed work included, as a multiple of the recorded ones."""
 LEAST = 0.05
 """Seconds that a case takes at least."""
 

@@ -45,7 +45,7 @@ BOUNDS: dict[str, Patches] = {
     "search of sets in depth": ((search, "WHOLE", ((10**9, 0),)), (search, "FEWEST", 1), (search, "MOST", 1)),
     "packing": ((size_decision, "PACKED", -1),),
 }
-"""What is put in the place of what, of attacks."""
+"""Patches that switch off one part of the attack each."""
 PLAN_SWITCHES: dict[str, Patches] = {
     "covers": ((CoverSearch, "of", _gives(None)),),
     "marginal gains": ((MarginalSearch, "of", _gives(None)),),
@@ -57,7 +57,7 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "levels above the best plan": ((levels, "SHARES", (0.0,)),),
     "further trees": ((RestartedSearch, "_is_given_up", _gives(False)),),
 }
-"""The same, of best plans."""
+"""Patches that switch off one part of the search for best plans each."""
 ATTACK_SWITCHES = [*STAGE_NAMES, *BOUNDS]
 """Names of what can be left out of attacks: stages, then bounds."""
 

@@ -135,7 +135,7 @@ def _user_function(rng: np.random.Generator) -> Problem:
 
 
 def _edges(rng: np.random.Generator) -> Problem:
-    """Nobody is attacked, or everybody, or no robot hears another."""
+    """Make an extreme problem: no attack, attacks on everything, or no links."""
     data = _team(rng)
     robots, links = int(data["owners"][-1]) + 1, data["graph"].number_of_edges()
     data["alpha_s"] = int(rng.choice([0, robots]))

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 __all__ = ["ENTRIES", "MAIN", "METRICS", "PLANNERS", "STEPS", "STUDIES", "VARIED", "case_of", "scenario_of", "sighted"]
 
 STEPS = 20
-"""Of a mission. Windows are the first and the last half, which share no step."""
+"""Steps of a mission. Windows are the first and the last half, which share no step."""
 PLANNERS = ("greedy", "ratt", "refined", "maxmin", "myopic")
-"""By the names of ``run_mission``; all are compared with the first."""
+"""Planners by the names of ``run_mission``; all are compared with the first."""
 SEARCHED: dict[str, Planner] = {"maxmin": MaxMinPlanner(gap=1e-3, max_nodes=10)}
 """Limited by nodes, not by time, so that missions are the same on every machine."""
 METRICS = ("rmse", "rmse_first_half", "rmse_last_half", "largest", "unseen", "longest")

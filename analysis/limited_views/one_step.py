@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["ENTRY", "STUDY", "measured"]
 
 GAP, NODES = 1e-3, 3_000
-"""Where the search for the best plan stops; counted in nodes, so that rows are the same on every machine."""
+"""Gap and nodes at which the search for the best plan stops; nodes, so that rows are the same on every machine."""
 
 
 def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:

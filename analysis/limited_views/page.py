@@ -101,7 +101,7 @@ def _cases(rows: Sequence[Row]) -> Iterator[tuple[str, list[Row]]]:
 
 
 def _particular(row: Row) -> str:
-    """What differs from the base case, in words."""
+    """Name the differences from the base case."""
     words = [f"view {row['view']} degrees"]
     words += [f"reach {row['reach']} m"] if row["reach"] != "unlimited" else []
     words += [f"noise {row['noise']}"] if row["noise"] != "camera" else []
@@ -112,7 +112,7 @@ def _particular(row: Row) -> str:
 
 
 def _one_step(rows: Sequence[Row]) -> Iterator[str]:
-    """How much nearer to the best possible an exact plan is, in one step."""
+    """Compare an exact plan's distance from the best possible with the other planners', in one step."""
     yield "## One step\n"
     yield "Worst-case value of each plan as a share of the best possible (trace, mean over the teams), and what an"
     yield "exact plan adds to that of RATT. Shares are of the proved upper end, so they are at least as stated. Open:"

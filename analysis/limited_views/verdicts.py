@@ -16,7 +16,7 @@ __all__ = ["Outcome", "outcome", "relative_change"]
 
 
 class Outcome(Enum):
-    """What a 95 % interval of a change says, if less is better."""
+    """Verdict of a 95 % interval of a change, if less is better."""
 
     PAYS = "pays"
     COSTS = "costs"

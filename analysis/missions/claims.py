@@ -1,4 +1,4 @@
-"""What the guide says of missions, each judged by paired intervals."""
+"""Claims of the guide on missions, each judged by paired intervals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What exact max-min plans add to RATT over whole missions, and what the best plan without attack loses.
+"""Gain of exact max-min plans over RATT over whole missions, and loss of the best plan without attack.
 
 ``python -m analysis.missions.exact_flights --trials 100 --out DIR``
 """

@@ -120,7 +120,7 @@ MILD = Study(
     metrics=("rmse", "trace", "nees"),
     measure=measure,
 )
-"""What planning for the worst costs if nobody attacks, or somebody who does not see what hurts most."""
+"""Cost of planning for the worst case if nobody attacks, or an attacker who does not see what hurts most."""
 NAMES = {"maxmin": "optimum", "nonrobust": "nonrobust_optimum"}
 """Planners whose look in figures goes by another name."""
 

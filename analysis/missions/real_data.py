@@ -1,4 +1,4 @@
-"""Which robots' cameras to run under attack: planners on the MRCLAM dataset, replayed.
+"""Choice of the robots whose cameras run under attack: planners on the MRCLAM dataset, replayed.
 
 ``python -m analysis.missions.real_data --data FOLDER --trials 5``
 

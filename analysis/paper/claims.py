@@ -1,4 +1,4 @@
-"""What the paper says about its figures, each tested as a statistic on our results."""
+"""Claims of the paper about its figures, each tested as a statistic on our results."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def _caa_line(rows: Sequence[Mapping[str, str]]) -> str:
 
 
 def _sharp_loss_line(rows: Sequence[Mapping[str, str]]) -> str:
-    """How often NR-OPT loses at least a tenth more than RATT, which is what the paper's three pictures show."""
+    """Count how often NR-OPT loses at least a tenth more than RATT, as in the paper's three pictures."""
     sharp, equal = [], []
     for case in dict.fromkeys(row["case"] for row in rows):
         kept = select(rows, case=case)

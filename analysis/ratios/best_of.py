@@ -38,7 +38,7 @@ class BestOfThree:
 
 @dataclass(frozen=True, slots=True)
 class _Elements:
-    """Which bit is whose choice for a robot: RATT's, the myopic planner's (same for bait), Greedy's, the other's."""
+    """Numbering of a robot's choices by bits: RATT's, the myopic planner's (same for bait), Greedy's, the other's."""
 
     n_robots: int
     n_bait: int

@@ -94,7 +94,7 @@ def _picks(n_robots: int, order: Sequence[int]) -> Iterator[tuple[int, int]]:
 
 
 def exchange_gain(problem: Problem, elements: IntArray) -> float:
-    """How much the best exchange of one robot's element adds to a plan's worst case; 0 if none adds anything."""
+    """Return the gain in a plan's worst case from the best exchange of one robot's element; 0 if none gains."""
     here = uninterrupted(worst_case_attack(problem, elements)).upper
     best = here
     for robot, choice in enumerate(problem.choices):

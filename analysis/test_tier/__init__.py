@@ -1,1 +1,1 @@
-"""Which tests run by default: their costs, the faults they find, and the list that both make."""
+"""Short tier of tests: their costs, the faults they find, and the list that both make."""

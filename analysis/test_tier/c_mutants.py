@@ -51,7 +51,7 @@ def _changes(code: str) -> Iterator[tuple[int, int, str, str]]:
 
 
 def _closing(code: str, begin: int) -> int:
-    """Where the bracket that is open at ``begin`` closes."""
+    """Find where the bracket that is open at ``begin`` closes."""
     depth = 1
     for place in range(begin, len(code)):
         depth += {"(": 1, ")": -1}.get(code[place], 0)

@@ -60,7 +60,7 @@ def draw(root: Path, seed: int, count: int) -> list[Mutant]:
 
 
 def _shares(lines: Mapping[str, int], count: int) -> dict[str, int]:
-    """Of each family by its lines, at least one; the largest remainders are rounded up."""
+    """Divide the count among families by their lines, at least one each; the largest remainders are rounded up."""
     whole = sum(lines.values())
     exact = {family: max(1.0, count * n / whole) for family, n in lines.items()}
     shares = {family: int(share) for family, share in exact.items()}
@@ -71,7 +71,7 @@ def _shares(lines: Mapping[str, int], count: int) -> dict[str, int]:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """What became of a fault: found by the ``short`` tier, by the ``whole`` suite only, by ``none``; or ``open``."""
+    """Fate of a fault: found by the ``short`` tier, by the ``whole`` suite only, by ``none``; or ``open``."""
 
     number: int
     family: str
@@ -92,14 +92,14 @@ def read_rows(file: Path) -> dict[int, Row]:
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What reaches a line, the usual cost of every test function, and the cases that the short tier runs of some."""
+    """Tests that reach each line, usual costs of test functions, and the cases that the short tier runs of some."""
 
     reach: Reach
     costs: Mapping[str, Cost]
     cases: Mapping[str, int]
 
     def is_short(self, test: str) -> bool:
-        """Whether the short tier runs a test function, or some of its cases."""
+        """Tell whether the short tier runs a test function, or some of its cases."""
         return self.cases.get(test, 1) > 0
 
     def seconds(self, test: str, *, short: bool) -> float:

@@ -37,7 +37,7 @@ __all__ = [
 ]
 
 AGAIN = 0.7
-"""What a line counts for with each further test, of what it counted before."""
+"""Factor by which the weight of a line falls with each further test."""
 OWN = 10.0
 """Lines that a test is worth by itself: it asserts what no other does."""
 LEAST = 0.004
@@ -67,7 +67,7 @@ class Cost:
 
 
 def read_costs(path: Path) -> dict[str, Cost]:
-    """What was measured of each test function, if anything was."""
+    """Read the measured costs of each test function; empty if there are none."""
     if not path.exists():
         return {}
     with path.open(newline="", encoding="utf-8") as file:
@@ -85,7 +85,7 @@ def write_costs(path: Path, costs: Mapping[str, Cost]) -> None:
 
 
 def reached_units(reach: Reach, tests: Sequence[str]) -> tuple[list[np.ndarray], np.ndarray]:
-    """For each test the sets of lines that it reaches and one of its own, by number; how many lines each set has."""
+    """Number the sets of lines that each test reaches, with one of its own; count the lines in each set."""
     place = {test: i for i, test in enumerate(tests)}
     lines: dict[frozenset[int], int] = {}
     for found in reach.every_line():
@@ -139,7 +139,7 @@ def parts_of(names: Sequence[str], costs: Sequence[Cost]) -> list[Part]:
 
 
 def _share(cases: int, tests: int) -> float:
-    """What some cases find, of what all do."""
+    """Return the share of a function's findings that some of its cases find."""
     return 1.0 if cases == tests else FIRST * cases / min(tests, CASES)
 
 

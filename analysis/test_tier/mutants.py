@@ -56,7 +56,7 @@ def python_mutants(file: str, source: str) -> list[Mutant]:
 
 
 class _Places:
-    """Where nodes are in a text; Python counts bytes of UTF-8 in a line."""
+    """Places of nodes in a text; Python counts bytes of UTF-8 in a line."""
 
     def __init__(self, source: str) -> None:
         self._source = source
@@ -76,7 +76,7 @@ class _Places:
 
 
 def _nodes(node: ast.AST) -> Iterator[ast.AST]:
-    """What runs, and decides something."""
+    """Yield the nodes that run and decide something."""
     if isinstance(node, ast.Raise | ast.Assert | ast.Import | ast.ImportFrom | ast.JoinedStr):
         return
     if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):

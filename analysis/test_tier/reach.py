@@ -73,7 +73,7 @@ class Costs:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Iterator[Any]:
-        """What a shared fixture reaches counts for every test that may stand on it."""
+        """Count the lines that a shared fixture reaches for every test that may rely on it."""
         if fixturedef.scope == "function":
             return (yield)
         self._switch(f"{fixturedef.baseid}*")

@@ -1,4 +1,4 @@
-"""Which test functions reach a line: measured for Python, by names for C, which coverage cannot see.
+"""Test functions that reach a line: measured for Python, by names for C, which coverage cannot see.
 
 A function in C counts as reached by the tests that reach a line of Python which names it, or which names a function in
 C that calls it. The same holds for constants and classes, whose lines run once, at import.
@@ -49,7 +49,7 @@ def collect(folder: Path, root: Path, tests: Iterable[str]) -> Lines:
 
 
 def _tests_of(context: str, every: list[str]) -> list[str]:
-    """What a process inherits and what is switched to stand on either side of a bar."""
+    """Return the tests of a context: the inherited one and the switched one stand on either side of a bar."""
     name = context.partition("|")[2] if context.startswith("|") else context.partition("|")[0]
     if name.endswith(WHOLE_FILE):
         stem = name.removesuffix(WHOLE_FILE)
@@ -58,7 +58,7 @@ def _tests_of(context: str, every: list[str]) -> list[str]:
 
 
 def merged(old: Lines, new: Lines, measured: Container[str]) -> Lines:
-    """What is known when some tests are measured again: nothing old of these counts."""
+    """Merge lines measured again into the old ones; nothing old of the measured tests counts."""
     lines: dict[str, dict[int, frozenset[str]]] = {}
     for file in old.keys() | new.keys():
         before, now = old.get(file, {}), new.get(file, {})
@@ -100,7 +100,7 @@ class Piece:
     """Lines of a function without its head, which runs once, at import."""
     measured: bool = False
     languages: tuple[str, ...] = (PYTHON,)
-    """Those that may name it."""
+    """Languages whose code may name it."""
 
 
 class Reach:
@@ -170,7 +170,7 @@ class Reach:
 
 
 def _pieces_of_python(tree: ast.Module) -> dict[int, Piece]:
-    """By line; the outermost function around it, or the statement of the module."""
+    """Map lines to pieces: the outermost function around a line, or the statement of the module."""
     pieces: dict[int, Piece] = {}
     for node in [*(one for one in ast.walk(tree) if isinstance(one, ast.FunctionDef)), *tree.body]:
         end = (node.end_lineno or 0) + 1
@@ -210,7 +210,10 @@ def _numbered(text: str) -> Iterable[tuple[int, str]]:
 
 
 def _pieces_of_c(text: str) -> dict[int, Piece]:
-    """By line; functions as they are formatted, with the last bracket alone, or at the end of the only line."""
+    """Map lines to pieces.
+
+    Functions end as they are formatted: with the last bracket alone, or at the end of the only line.
+    """
     pieces: dict[int, Piece] = {}
     for head in C_FUNCTION.finditer(text):
         first = text.find("\n", head.end())

@@ -22,7 +22,7 @@ IMPORTED = (
     *("cvxpy", "distributed", "highspy", "matplotlib.pyplot", "networkx", "pandas", "pydantic"),
     *("scipy.optimize", "stonesoup.platform", "typer"),
 )
-"""What the tests import and no fault changes; without Hypothesis, whose plug-in must come after pytest."""
+"""Modules that the tests import and no fault changes; without Hypothesis, whose plug-in must come after pytest."""
 ENDS = {0: "passed", 1: "failed", 5: "no tests", -signal.SIGALRM: "too long"}
 LEAST = 5.0
 """Seconds that every test has."""
@@ -38,7 +38,7 @@ class Chosen:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """By file in the given order, since tests of a file share fixtures; cases as tests/conftest.py chooses them."""
+        """Order tests by file, as tests of a file share fixtures; choose cases as tests/conftest.py does."""
         of_function: dict[str, list[pytest.Item]] = {name: [] for name in self._left}
         for item in items:
             of_function.get(_function(item.nodeid), []).append(item)

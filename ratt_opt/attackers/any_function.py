@@ -1,6 +1,6 @@
 """Attacks on a plan whose objective is any set function, known by its values alone.
 
-Upper end: attacks that no single exchange improves. Lower end: some group keeps ``k`` seeing robots
+Upper end: attacks that no single exchange improves. Lower end: some group keeps ``k`` unblinded robots
 (``forced_survivors``), so by monotonicity it is worth at least the k-th smallest individual value, and at least the
 strongest robot that cannot be blinded. Where theory proves the function submodular, every robot adds at least what it
 adds on top of all others of the plan; where the function states a bound ``c`` on its total curvature, at least
@@ -177,7 +177,7 @@ class _Start:
         self._hot, self._scale = WARM if is_warm else HOT, max(abs(task.values(range(n_robots))), 1e-300)
 
     def run(self, moves: int) -> None:
-        """Cool from hot to cold in so many moves per robot; raises ``OutOfBudget``."""
+        """Anneal from hot to cold with ``moves`` moves per robot; raises ``OutOfBudget``."""
         task, steps, energy = self._task, moves * len(self._group), self._energy()
         task.offer_split(self._parts(), self._blind)
         for step in range(steps):

@@ -1,8 +1,8 @@
 """Exact attacks on any non-decreasing function of any number of robots, by its values alone.
 
-Robots are placed one after the other, each in a group and blinded or not. What is placed cuts the links between its
-groups: nodes beyond a budget are left out. Whoever is placed later makes no group worth less, so the best group of the
-robots placed bounds every completion from below, and so does the strongest robot that can no longer be blinded. The
+Robots are placed one after the other, each in a group and blinded or not. Placed robots cut the links between their
+groups: nodes beyond a budget are left out. A robot that is placed later makes no group worth less, so the best group of
+the robots placed bounds every completion from below, and so does the strongest robot that can no longer be blinded. The
 node of the least bound is divided first: its bound is one on all attacks.
 """
 
@@ -99,7 +99,7 @@ class AttackTree:
             heappop(self._open)
 
     def _divide(self, node: _Node) -> None:
-        """Place one more robot wherever the budgets allow, or offer the attack where all are placed."""
+        """Branch on the group of one more robot, within the budgets; if all are placed, offer the attack."""
         if not node.left:
             self._offer(node)
             return

@@ -44,8 +44,8 @@ DENSE = 0.5
 SMALL = 12
 """Most robots for which all sets are looked at before anything else: some milliseconds."""
 FIRST_STARTS, INNER_STARTS, STARTS_FOR = 18, 3, 24
-"""Annealed attacks before the first threshold, and where only nodes limit or another search sets no time: about every
-fourth start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
+"""Annealed attacks before the first threshold, and within another search or a limit of nodes alone. About every fourth
+ start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
 The first grow with the square of the robots beyond these 24: half a second of them at 24 robots, 1.4 s at 30."""
 
 INNER_NODES = 500_000

@@ -108,7 +108,7 @@ def criticality_ranking(
 
 
 def _losses(problem: Problem, values: PlanValues, targets: list[int | Link]) -> list[float]:
-    """Team value that each target alone costs; a link costs something only where its cut leaves more groups."""
+    """Losses of team value by each target alone; a link has one if its cut leaves more groups."""
     bridges = problem.communication.bridges()
     untouched = PartialAttack.of(problem)
     felt = [t for t in targets if isinstance(t, int) or t in bridges]

@@ -118,7 +118,7 @@ class EveryAttack:
         return int(left[most[left].argmin()])
 
     def _values(self, group: tuple[int, ...], blind: BoolArray) -> FloatArray:
-        """(K,) what a group is worth where some of its robots are blinded. Sums, no differences: no digit is lost."""
+        """(K,) values of a group with some robots blinded. Sums, no differences: no digit is lost."""
         members = list(group)
         sums = (~blind[:, members]).astype(np.float64) @ self._rows[members]
         prior = self._objective.prior_information

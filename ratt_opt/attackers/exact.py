@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 __all__ = ["strongest_attack", "worst_case_attack"]
 
 RENEWED = 4
-"""Times as many seconds as an earlier attack on the plan had, from which its first stages, which had shares of them,
-are run again before its last one goes on."""
+"""Growth of the seconds since an earlier attack on the plan from which its first stages, which had shares of them, are
+run again before its last one goes on."""
 
 UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
 

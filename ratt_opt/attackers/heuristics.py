@@ -59,7 +59,7 @@ class PartialAttack:
         return replace(self, blinded=self.blinded | {robot})
 
     def cut_off(self, robot: int) -> PartialAttack | None:
-        """Cut all links that robot still has; ``None`` where one is protected or the budget is too small."""
+        """Cut all links that robot still has; ``None`` if one is protected or the budget is too small."""
         communication = self.problem.communication
         links = communication.links_of(robot)
         if links & self.problem.protected_links or len(self.cut | links) > self.problem.alpha_c:

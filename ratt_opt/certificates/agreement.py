@@ -1,4 +1,4 @@
-"""Agreement of a certificate with the problem in a file, whichever machine computed its matrices.
+"""Agreement of a certificate with the problem in a file, on any machine.
 
 Two machines compute the matrices of one scenario with differences in the last digits (vector instructions). So they
 are enclosed anew from the scenario's own numbers, in ball arithmetic that shares nothing with the code that

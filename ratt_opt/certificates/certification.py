@@ -38,7 +38,7 @@ class Certificate:
 class Certification:
     """Certificate of a result, or (``None``) ``why_not`` in words.
 
-    ``final`` : whether that is how it stays; not so while a proof is under way, or where one was cut short.
+    ``final`` : whether it stays so; false while a proof is under way, and after one was cut short.
     """
 
     certificate: Certificate | None = None

@@ -1,4 +1,4 @@
-"""Proofs that a plan keeps a value under every attack: the first of a few conclusions that is reached.
+"""Proofs of a plan's worst-case value: the first of a few conclusions that is reached.
 
 Built in floating point, decided by the verifier in exact arithmetic.
 """
@@ -40,7 +40,7 @@ ENUMERATED: dict[str, Any] = {"conclusion": "enumerated"}
 
 
 def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE) -> Any:
-    """Return the record of a proof that the plan keeps ``threshold`` under every attack.
+    """Return the record of a proof that the plan's worst-case value is at least ``threshold``.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ class PlanSets:
 
         Raises
         ------
-        NotClosedError : they do not have states of so many coordinates.
+        NotClosedError : states have more than ``LARGEST_DIMENSION`` coordinates.
         """
         if self.objective.dimension > LARGEST_DIMENSION:
             raise NotClosedError
@@ -69,7 +69,7 @@ def _team(objective: InformationObjective, elements: IntArray) -> Team:
 
 
 def _counted_coordinates(prior: FloatArray, output: FloatArray) -> FloatArray:
-    """(M, d, d) ``B`` with states ``B y``: of y what counts, ``C B y``, is as large as y but for a negligible rest."""
+    """(M, d, d) ``B`` with states ``B y``: of y what counts, ``C B y``, is as large as y up to a negligible rest."""
     _, sizes, axes = np.linalg.svd(output)
     spread, counted = np.einsum("mia,mab,mib->mi", axes, prior, axes), sizes.shape[1]
     whole = (sizes**2 * spread[:, :counted]).sum(axis=1, keepdims=True)

@@ -46,14 +46,14 @@ SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
 """Relative amounts by which a float lower bound is lowered, in turn, until exact arithmetic proves it."""
 
 LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
-"""The largest shave is at least so many times what the objective's values are off by."""
+"""Least ratio of the largest shave to the error of the objective's values."""
 LOWER_SHARE = 0.4
 """Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
 CHECKED_SHARE = 0.7
 """Share of them, less the reserve, for verifying one proof; if that does not end, something less is proved."""
 RESERVED, LEAST_RESERVED = 1.5, 0.1
-"""Times as many seconds as the upper end took to bound, and seconds besides, that are kept from verifying both ends:
-where that does not end, the file is verified with the upper end alone."""
+"""Seconds kept from verifying both ends: relative to those of bounding the upper end, and in addition. If verifying
+does not end, the file is verified with the upper end alone."""
 
 
 def problem_document(problem: Problem) -> dict[str, Any]:
@@ -91,7 +91,7 @@ def _is_known(problem: Problem) -> bool:
 def certify_if_possible(
     problem: Problem, result: MaxMinResult, path: str | Path | None, budget: Budget | None = None, source: object = None
 ) -> Certification:
-    """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` where no certificate is wanted.
+    """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` if no certificate is wanted.
 
     A file that cannot be written is such a reason too: what the search found does not hang on it.
 

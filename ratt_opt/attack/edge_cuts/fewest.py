@@ -56,7 +56,7 @@ class FewestCuts:
 
     @property
     def is_exact(self) -> bool:
-        """Whether ``lower`` meets ``upper``."""
+        """Tell whether ``lower`` meets ``upper``."""
         return self.lower == self.upper
 
 
@@ -149,7 +149,7 @@ def _attribute(graph: object, kind: str, name: str) -> list[tuple[Any, ...]]:
 
 
 def _complete(argument: str, given: Mapping[T, object], known: Iterable[T], name: Callable[[T], T]) -> dict[T, object]:
-    """What is given for each, by its name in the graph.
+    """Rename the keys of given values to the graph's; all must be known and present.
 
     Raises ``InputError`` : one is unknown or missing.
     """

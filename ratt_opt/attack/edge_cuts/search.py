@@ -72,7 +72,7 @@ class CutSearch:
 
     @property
     def is_settled(self) -> bool:
-        """Whether the ends meet, or the target is decided."""
+        """Tell whether the bounds meet, or the target is decided."""
         on_target = self.target is not None and (self.upper <= self.target or self.lower > self.target)
         return self.lower >= self.upper or on_target
 

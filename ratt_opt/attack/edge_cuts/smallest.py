@@ -254,7 +254,7 @@ class _SizeSearch:
             self._stop = spent.stop
 
     def _decide(self, size: int, budget: Budget) -> bool:
-        """Whether it becomes known if some cut within the budget of links leaves groups of at most this size."""
+        """Decide whether a cut within the budget leaves groups of at most this size; return whether it is decided."""
         if size < self._network.size.max():
             self._raise(int(self._network.size.max()), COUNTED)
             return True

@@ -164,7 +164,7 @@ class _LinkSearch:
 
     @property
     def level(self) -> float:
-        """A choice must keep more than this to be better than the one in hand."""
+        """Cutoff: a better choice has a larger worst-case value than this."""
         best = self.after.lower
         return best + max(CLOSED_WIDTH * abs(best), self.upgrade.problem.objective.rounding)
 
@@ -232,7 +232,7 @@ class _LinkSearch:
     def _attack(
         self, links: tuple[Link, ...], *, share: float = ATTACK_SHARE, max_nodes: int | None = None
     ) -> AttackResult:
-        """Attack the team that has these links, and keep them where the plan is proved to keep more than before."""
+        """Attack the team that has these links; they become the best if a larger worst case is proved."""
         if self._last is None or self._last[0] != links:
             self._last = links, self.upgrade.changed(links), AttackMemory()
         _, changed, memory = self._last

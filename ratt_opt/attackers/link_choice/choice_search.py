@@ -36,7 +36,7 @@ class LinkChoice:
 def best_choice(
     known: Sequence[KnownAttack], count: int, budget: Budget, *, above: float, enough: float
 ) -> LinkChoice | None:
-    """The choice of at most ``count`` candidates of largest value; ``None`` where none is worth more than ``above``.
+    """The choice of at most ``count`` candidates of largest value; ``None`` if none is worth more than ``above``.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _most_useful_first(free: int, withstands: Sequence[KnownAttack]) -> Iterator
 
 
 def _bits(mask: int, size: int) -> NDArray[np.uint8]:
-    """(8 size,) the bits of a mask of so many bytes, the lowest first."""
+    """(8 size,) the bits of a mask of ``size`` bytes, the lowest first."""
     return np.unpackbits(np.frombuffer(mask.to_bytes(size, "little"), dtype=np.uint8), bitorder="little")
 
 

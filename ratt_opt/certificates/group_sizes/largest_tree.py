@@ -23,8 +23,8 @@ __all__ = ["Found", "grow_tree"]
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """Masks as the verifier has them; the posterior of the seeing ones; multipliers to begin with; whether one more
-    sees than in the case before."""
+    """Masks of the verifier's case; posterior of the unblinded robots; first multipliers; whether one more robot
+    senses than in the case before."""
 
     posterior: FloatArray
     start: FloatArray

@@ -1,7 +1,7 @@
 """Proofs that every attack leaves a group worth a threshold, by the sizes of the groups that an attack can leave.
 
-Bounds of what groups of so many robots score say how many robots see in the largest group at least. Either any so many
-are worth the threshold, or those a few more, and the sizes between them have a tree each.
+Bounds on the scores of groups of each size give a least number of unblinded robots in the largest group. Either any
+set of that size reaches the threshold, or any a little larger, and the sizes between them have a tree each.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ class Cases:
         return self.check(tree, root, {"budget": self._close_no_set}, ("sense", "limit"))
 
     def groups(self, most: int, least: int = 0, blinded: int | None = None) -> Case:
-        """Groups of an attack: ``least`` to ``most`` of the robots sense; so many are ``blinded``, if that is given."""
+        """Groups of an attack: ``least`` to ``most`` of the robots sense; ``blinded``, if given, are blinded."""
         everyone, low, high = self.everyone, blinded or 0, self.blinded if blinded is None else blinded
         return Case(self.worth.nobody, everyone, 0, everyone, everyone & ~self.safe, everyone, least, most, low, high)
 

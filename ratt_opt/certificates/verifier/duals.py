@@ -100,7 +100,7 @@ class Duals:
 
         Of the links that leave it those between decided robots count, those from an open robot to decided ones, and
         from open robots to others what the flow carries. Who of the robots that may sense is blinded does not matter
-        to the cost: say that they are inside, as far as ``low`` of the group's robots must be, but for those that are
+        to the cost: say that they are inside, as far as ``low`` of the group's robots must be, except those that are
         not inside and cannot sense.
         """
         near, link, price = self.cases.near, self.link + bound.cut, self.blinded + bound.blinding
@@ -152,7 +152,7 @@ class Duals:
 def check_duals(cases: Cases, size: int, *given: object) -> int:
     """Check the proof: its limits, duals, bounds and tree, and the partition if groups are listed; returns its leaves.
 
-    ``size`` : any so many robots are worth the claim
+    ``size`` : any set of that many robots is worth the claim
     """
     limits, dual_values, bounds, tree, *partition = given
     leaves = cases.check_limits(limits)

@@ -43,7 +43,7 @@ def definite(matrix: fmpq_mat) -> int:
     """Return 1 for a positive definite, 0 for a singular positive semidefinite matrix, -1 otherwise.
 
     The eigenvalues of a symmetric matrix are real. None of them is negative if and only if the signs of its
-    characteristic polynomial's coefficients alternate, but for zeros: then it has one sign at all negative numbers.
+    characteristic polynomial's coefficients alternate, up to zeros: then it has one sign at all negative numbers.
     """
     afford(matrix)
     if matrix.nrows() == 2 and matrix[0, 0] > 0 and (minor := matrix.det()) >= 0:
@@ -60,9 +60,9 @@ def is_positive(matrix: fmpz_mat) -> bool:
 
 
 def missing(matrix: fmpq_mat, identity: fmpq_mat) -> Any:
-    """Return ``delta >= 0`` with ``matrix + delta I`` positive semidefinite; 0 where the matrix is.
+    """Return ``delta >= 0`` with ``matrix + delta I`` positive semidefinite; 0 if the matrix is.
 
-    ``None`` where the matrix is further from it than rounding explains.
+    ``None`` if the matrix is further from it than rounding explains.
     """
     if definite(matrix) >= 0:
         return fmpq(0)

@@ -1,4 +1,4 @@
-"""The plan keeps at least the claim's lower end under every attack: one tree of cases, and what follows from it."""
+"""Verification of the lower end: one tree of cases, and the conclusion from it for every attack."""
 
 from __future__ import annotations
 

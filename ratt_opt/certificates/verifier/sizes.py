@@ -1,11 +1,12 @@
-"""The plan keeps a value under every attack on any graph, by the sizes of the groups that an attack can leave.
+"""Verification of a worst-case value on any graph, by the sizes of the groups that an attack can leave.
 
 Blinding more robots makes no group better: say that an attack blinds as many as it may, and leaves groups that are all
 worth less than the claim. Take the group with the most sensing robots, a of them, and with b blinded ones. By duals (as
 in ``duals.py``, and blinded robots cost nothing) the groups cost no more than the slack together. Forms bound from
-below what groups of so many robots cost, so what the others cost at least, by their sizes alone, as none has more than
-a sensing robots, says what the largest one may cost. That decides which a and b are possible. As any ``size`` robots
-are worth the claim, a is less. For each that is left, a tree shows that such a group is worth the claim, or costs more.
+below the cost of groups of each size, and so the least cost of the others by their sizes alone, as none has more than
+a sensing robots. The rest of the slack is the most that the largest one may cost. That decides which a and b are
+possible. As any ``size`` robots are worth the claim, a is less. For each that is left, a tree shows that such a group
+is worth the claim, or costs more.
 
 A *form* bounds costs from below: let robots I be in the group, and ``count`` of some others, x_i = 1 for these. For any
 diagonal u, as x_i^2 = x_i and sum of x = ``count``, the group costs more than a limit if
@@ -41,7 +42,7 @@ __all__ = ["UNIT", "LargestGroup", "LinkCosts", "check_sizes", "largest_groups"]
 LARGEST = 2**31
 """Largest size of duals, costs and diagonals."""
 MOST_ROBOTS = 200
-"""A characteristic polynomial of so many rows takes less than a second; one of 1,000 minutes."""
+"""Most robots: a characteristic polynomial of that many rows takes less than a second; one of 1,000 minutes."""
 UNIT = 2**10
 """Unit of diagonals."""
 
@@ -108,7 +109,7 @@ class LinkCosts:
         return cost if cost <= self.most else inf
 
     def raise_least(self, size: int, least: int, diagonal: list[int]) -> None:
-        """Take over that groups of so many robots cost at least that, after checking it."""
+        """Check that groups of ``size`` robots cost at least ``least``, and use it from then on."""
         shown = self.are_above(least - 1, diagonal, (0, (1 << len(self.near)) - 1), size)
         need(shown, "lower proof: groups of a size may cost less")
         self.least[size] = max(self.least[size], self._left(-(-least // self.step) * self.step))

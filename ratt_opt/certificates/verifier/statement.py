@@ -102,7 +102,7 @@ class Statement:
         self.output = stated or [self.identity] * len(prior)
 
     def _derive(self, prior_range: object) -> None:
-        """Derive the quantities that the checks need; information must be semidefinite but for rounding."""
+        """Derive the quantities that the checks need; information must be semidefinite up to rounding."""
         self.inverse = [self._inverse(p) for p in self.prior]
         self.square = [c.transpose() * c for c in self.output]
         parts = zip(self.weights, self.square, self.prior, strict=True)

@@ -1,4 +1,4 @@
-"""No plan keeps more than the claim's upper end under every attack: a search tree, checked leaf by leaf.
+"""Verification of the upper end for all plans: a search tree, checked leaf by leaf.
 
 Notation, per target: ``<A, B> = tr(A B)`` and ``L(S) = prior^{-1} + sum of the information of S``.
 """
@@ -184,7 +184,7 @@ class _Proof:
         return index(where, attack, len(self._groups))
 
     def _groups_left(self, attack: object) -> list[frozenset[int]]:
-        """Check an attack against the budgets; return the seeing robots of its groups, by lowest robot."""
+        """Check an attack against the budgets; return the unblinded robots of its groups, by lowest robot."""
         about = self.about
         robots, pairs = fields("attack", attack, "robots links")
         blinded, cut = frozenset(indices("attack robots", robots, about.n)), links("attack links", pairs, about.n)

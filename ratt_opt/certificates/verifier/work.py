@@ -71,7 +71,7 @@ TELLING = 100
 
 @contextmanager
 def watched(say: Callable[[str], None]) -> Iterator[None]:
-    """Have whoever waits for what is checked or covered inside the block told how far it is."""
+    """Report the progress of checks and covers inside the block by ``say``."""
     token = _WATCHER.set(say)
     try:
         yield
@@ -119,7 +119,7 @@ def hold(number: fmpq, count: int = 1) -> None:
 
 
 def afford(matrix: fmpq_mat | fmpz_mat) -> None:
-    """Raise :class:`UndecidedError` where one inverse, determinant or polynomial of a matrix outlasts the time left.
+    """Raise :class:`UndecidedError` if one inverse, determinant or polynomial of a matrix outlasts the time left.
 
     Nothing looks at the clock inside such an operation, so its time is estimated before.
     """
@@ -134,7 +134,7 @@ def afford(matrix: fmpq_mat | fmpz_mat) -> None:
 
 
 def refuse_wide(matrices: Iterable[fmpq_mat], d: int) -> None:
-    """Raise :class:`UndecidedError` where a single operation on one of the matrices would take too long."""
+    """Raise :class:`UndecidedError` if a single operation on one of the matrices would take too long."""
     if d**4 * BITS_OF_A_FLOAT <= WIDEST:
         return
     for matrix in matrices:
