@@ -41,6 +41,7 @@ Without it attacks on 24 and 30 robots with a criterion of one's own were 0.6 to
 s; with it 0 to 1 %."""
 
 USER_FUNCTION: tuple[Stage[Team], ...] = (
+    Stage("smallest largest group", Team.smallest_largest_group, Team.counts_robots),
     Stage("single robots", Team.singles, Team.is_valued_at_once),
     Stage("every attack", Team.every_attack, Team.has_few_attacks_by_value),
     Stage("greedy steps and exchanges", Team.exchanges, Team.is_valued_at_once),
@@ -52,6 +53,7 @@ USER_FUNCTION: tuple[Stage[Team], ...] = (
 """Set functions that are known by their values alone."""
 
 CRITERION: tuple[Stage[Criterion], ...] = (
+    Stage("smallest largest group", Criterion.smallest_largest_group, Criterion.counts_robots),
     Stage("thresholds", Criterion.thresholds_of_few, Criterion.is_small),
     Stage("single robots", Criterion.first_bound),
     Stage("every attack", Criterion.every_attack, Criterion.has_few_attacks, EVERY_ATTACK.most),

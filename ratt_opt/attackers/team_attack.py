@@ -5,16 +5,23 @@ from __future__ import annotations
 from math import comb, isinf
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.attack.all_sets import LARGEST_VALUED, AllSets, sets_can_be_looked_at
+from ratt_opt.attack.edge_cuts.smallest import largest_group_of
 from ratt_opt.attackers.any_function import annealed_attacks, any_bound, exchange_attack
 from ratt_opt.attackers.attack_tree import AttackTree, try_every_attack
 from ratt_opt.budget import Stop
 from ratt_opt.graph.few_cuts import MOST_ATTACKS, attacks_are_few
+from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask, Resumable
 
 __all__ = ["TeamAttack", "last_stage"]
+
+COUNTED_NODES = 500_000
+"""Of the smallest largest group where another search asks and nothing is limited: some ten seconds."""
 
 
 def last_stage(task: AttackTask, search: Resumable) -> Stop:
@@ -35,6 +42,10 @@ class TeamAttack:
         self._has_table = sets_can_be_looked_at(task)
 
     # -- what the schedule asks ----------------------------------------------------------------------------------
+
+    def counts_robots(self) -> bool:
+        """No robot to blind, all robots alike: a group is worth what their number says."""
+        return self._threat.n_blinded == 0 and self.task.problem.objective.are_alike(self.task.values.plan)
 
     def is_valued_at_once(self) -> bool:
         """More than 20 robots, or a limit."""
@@ -70,6 +81,15 @@ class TeamAttack:
         return self._is_limited and self.is_inner
 
     # -- the stages ----------------------------------------------------------------------------------------------
+
+    def smallest_largest_group(self) -> None:
+        """The smallest largest group, by prices of fewest cuts."""
+        most = COUNTED_NODES if self.is_inner and isinf(self.task.budget.seconds_left) else None
+        with self.task.budget.stage(max_nodes=most) as part:
+            found = largest_group_of(self._threat, part)
+            self.task.offer(Attack(links=found.cut))
+            fewest = np.arange(self.task.values.n) < found.lower
+            self.task.bracket.raise_lower(float(self.task.values.evaluate(fewest[None])[0]))
 
     def singles(self) -> None:
         """Raise the lower bound by single robots and their marginals."""

@@ -174,6 +174,10 @@ class SetFunction(ABC):
         """
         return 1.0
 
+    def are_alike(self, elements: IntArray) -> bool:  # noqa: ARG002  (nothing is known of them)
+        """Whether theory says that all sets of as many of these elements are worth the same; else nothing is known."""
+        return False
+
     def decomposition(self) -> Decomposition | None:
         """The parts of which the function is the weighted sum, or the least one; ``None`` if none are known."""
         return None

@@ -184,6 +184,10 @@ class InformationObjective(CriterionParts):
         other._singletons = other._negative_parts = None
         return other
 
+    def are_alike(self, elements: IntArray) -> bool:
+        """Whether they tell the same about every target."""
+        return bool((self.information[elements] == self.information[elements[:1]]).all())
+
     def decomposition(self) -> Decomposition | None:
         """The targets; ``None`` if the criterion states another value than the sum or the least over targets."""
         if self.is_least_of_targets:

@@ -77,6 +77,10 @@ class Metered(SetFunction):
         """Bound of the function itself."""
         return self.f.most_total_curvature
 
+    def are_alike(self, elements: IntArray) -> bool:
+        """As of the function itself."""
+        return self.f.are_alike(elements)
+
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
         if len(membership) > MOST_KEPT_AT_ONCE or len(self._known) > MOST_KEPT:

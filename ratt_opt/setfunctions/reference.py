@@ -42,6 +42,10 @@ class Modular(SizedFunction):
         """True if all summands are whole."""
         return are_exact(self.weights, self.n)
 
+    def are_alike(self, elements: IntArray) -> bool:
+        """Whether their weights are equal."""
+        return bool(np.ptp(self.weights[elements]) == 0)
+
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
         return membership @ self.weights
@@ -121,6 +125,10 @@ class ConcaveOfModular(SizedFunction):
     def __init__(self, weights: ArrayLike, shape: Callable[[FloatArray], FloatArray] = np.sqrt) -> None:
         self.weights: FloatArray = check_total("weights", check_nonnegative("weights", weights, ndim=1))
         self.shape, self._n = shape, len(self.weights)
+
+    def are_alike(self, elements: IntArray) -> bool:
+        """Whether their weights are equal."""
+        return bool(np.ptp(self.weights[elements]) == 0)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     import networkx as nx
 
-__all__ = ["SizeParams", "bound_soon", "by_subsets", "largest_group_soon", "smallest_largest_group"]
+__all__ = ["SizeParams", "bound_soon", "by_subsets", "largest_group_of", "largest_group_soon", "smallest_largest_group"]
 
 METHODS = ("auto", "milp", "spreading", "caa", "partitions", "enumeration", "counting")
 
@@ -119,10 +119,11 @@ def smallest_largest_group(
     if method in {"caa", "partitions"}:
         return by_caa(threat) if method == "caa" else by_integer_partitions(threat)
     ways = {"enumeration": by_subsets, "milp": by_integer_program, "spreading": by_spreading, "counting": by_counting}
-    return ways.get(method, _automatic)(threat, own)
+    return ways.get(method, largest_group_of)(threat, own)
 
 
-def _automatic(threat: Threat, budget: Budget) -> LargestGroup:
+def largest_group_of(threat: Threat, budget: Budget) -> LargestGroup:
+    """:func:`smallest_largest_group` of a threat, whose robots to blind do not count; nodes are those of ``budget``."""
     if threat.links_alike:
         return by_caa(threat)
     if is_nearly_a_tree(threat):
