@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["TeamAttack", "last_stage"]
 
 COUNTED_NODES = 500_000
-"""Of the smallest largest group where another search asks and nothing is limited: some ten seconds."""
+"""Nodes of the smallest largest group if another search asks without a limit: some ten seconds."""
 
 
 def last_stage(task: AttackTask, search: Resumable) -> Stop:

@@ -175,7 +175,7 @@ class SetFunction(ABC):
         return 1.0
 
     def are_alike(self, elements: IntArray) -> bool:  # noqa: ARG002  (nothing is known of them)
-        """Whether theory says that all sets of as many of these elements are worth the same; else nothing is known."""
+        """Return whether theory says that the value of a set of these elements depends on its number alone."""
         return False
 
     def decomposition(self) -> Decomposition | None:

@@ -185,7 +185,7 @@ class InformationObjective(CriterionParts):
         return other
 
     def are_alike(self, elements: IntArray) -> bool:
-        """Whether they tell the same about every target."""
+        """Return whether they tell the same about every target."""
         return bool((self.information[elements] == self.information[elements[:1]]).all())
 
     def decomposition(self) -> Decomposition | None:

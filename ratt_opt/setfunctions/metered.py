@@ -78,7 +78,7 @@ class Metered(SetFunction):
         return self.f.most_total_curvature
 
     def are_alike(self, elements: IntArray) -> bool:
-        """As of the function itself."""
+        """Ask the function itself."""
         return self.f.are_alike(elements)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:

@@ -43,7 +43,7 @@ class Modular(SizedFunction):
         return are_exact(self.weights, self.n)
 
     def are_alike(self, elements: IntArray) -> bool:
-        """Whether their weights are equal."""
+        """Return whether their weights are equal."""
         return bool(np.ptp(self.weights[elements]) == 0)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
@@ -127,7 +127,7 @@ class ConcaveOfModular(SizedFunction):
         self.shape, self._n = shape, len(self.weights)
 
     def are_alike(self, elements: IntArray) -> bool:
-        """Whether their weights are equal."""
+        """Return whether their weights are equal."""
         return bool(np.ptp(self.weights[elements]) == 0)
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
