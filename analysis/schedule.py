@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.attack.size_vectors.search import STAGES as SIZE_VECTORS
+from ratt_opt.attack.size_vectors.size_vector_search import STAGES as SIZE_VECTORS
 from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
 
 if TYPE_CHECKING:

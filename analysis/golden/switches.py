@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 from analysis.schedule import TABLES
 from ratt_opt.attack.dual_prices import ThresholdDecision
-from ratt_opt.attack.least_sets import search
+from ratt_opt.attack.least_sets import least_set_search
 from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
@@ -41,8 +41,12 @@ STAGE_NAMES = dict.fromkeys(
 BOUNDS: dict[str, Patches] = {
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
-    "outer polytopes of several robots": ((search, "HEAVY_ROBOTS", ((10**9, 1),)),),
-    "search of sets in depth": ((search, "WHOLE", ((10**9, 0),)), (search, "FEWEST", 1), (search, "MOST", 1)),
+    "outer polytopes of several robots": ((least_set_search, "HEAVY_ROBOTS", ((10**9, 1),)),),
+    "search of sets in depth": (
+        (least_set_search, "WHOLE", ((10**9, 0),)),
+        (least_set_search, "FEWEST", 1),
+        (least_set_search, "MOST", 1),
+    ),
     "packing": ((size_decision, "PACKED", -1),),
 }
 """Patches that switch off one part of the attack each."""

@@ -16,7 +16,7 @@ from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.columns import UNIT, Columns
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.sets_below import SetsBelow
-from ratt_opt.attack.team import Links, Team, has_loops, work_of_value
+from ratt_opt.attack.team import Links, Team, has_native_kernel, work_of_value
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.communication import robots_of
 from ratt_opt.graph.group_list import groups_of
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["LARGEST_LOOKED_AT", "LARGEST_VALUED", "AllSets", "Answer", "decide", "sets_can_be_looked_at"]
+__all__ = ["LARGEST_ENUMERATED", "LARGEST_VALUED", "AllSets", "Reachability", "can_enumerate_subsets", "decide"]
 
 LARGEST_VALUED = 20
-"""Most robots whose sets are all valued where the compiled loops do not have the objective: 2**20 values."""
-LARGEST_LOOKED_AT, MOST_WORK = 24, 2.0**32
-"""Most robots whose sets the loops look at (2**24 bytes), and multiplications that valuing all of them may take."""
+"""Most robots whose sets are all valued if the compiled code does not support the objective: 2**20 values."""
+LARGEST_ENUMERATED, MOST_WORK = 24, 2.0**32
+"""Most robots whose sets the compiled code enumerates (2**24 bytes), and most multiplications for their values."""
 STARTS, MOVES = 4, 400
 """Annealed attacks before the first threshold, and moves for each pair of robots; on most networks of 24 robots in the
 corpus one of them is the worst attack, and elsewhere the first threshold finds it."""
@@ -57,13 +57,13 @@ MOST_COLUMNS = 2_000_000
 """Within the gap, above which no cover is searched."""
 
 
-def sets_can_be_looked_at(task: AttackTask) -> bool:
+def can_enumerate_subsets(task: AttackTask) -> bool:
     """Tell whether all subsets of the team can be enumerated, by the compiled code or by their values."""
     n_robots, f = task.problem.n_robots, task.problem.objective
-    if not has_loops(f):
+    if not has_native_kernel(f):
         return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
     is_soon = work_of_value(f.n_targets, f.dimension) * 2.0**n_robots <= MOST_WORK
-    return n_robots <= LARGEST_VALUED or (is_soon and n_robots <= LARGEST_LOOKED_AT)
+    return n_robots <= LARGEST_VALUED or (is_soon and n_robots <= LARGEST_ENUMERATED)
 
 
 class AllSets:
@@ -116,7 +116,7 @@ class AllSets:
             return self._below
         if self._team is None:
             self._tabulate()
-            self._forget_what_relied_on_order()
+            self._drop_monotone_bounds()
         source: Team | FloatArray = self._table if self._team is None else self._team
         if self._team is not None and self._team.robots <= FEW:
             source = self._team.all_values()
@@ -153,7 +153,7 @@ class AllSets:
             table[masks] = asked.evaluate((masks[:, None] >> bits & 1).astype(np.bool_))
             self._valued += len(masks)
 
-    def _forget_what_relied_on_order(self) -> None:
+    def _drop_monotone_bounds(self) -> None:
         """Drop lower bounds that rely on a non-decreasing function, unless the table confirms it.
 
         The least value of the table holds in any case.
@@ -172,7 +172,7 @@ def _falls(table: FloatArray, rounding: float) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class Reachability:
     """Answer to a threshold question: ``is_reachable``, or ``None`` if undecided.
 
     ``level``, ``following`` : if it is not, what every attack leaves at least, and bit mask of the set that is worth it
@@ -188,7 +188,7 @@ class Answer:
 
 def decide(
     threat: Threat, below: SetsBelow, graph: GroupList, threshold: float, budget: Budget, *, steps: int
-) -> Answer:
+) -> Reachability:
     """Ask ``below`` for the threshold, list columns, bound their master, and search covers within its gap.
 
     ``steps`` : of the search of covers, columns looked at
@@ -205,14 +205,14 @@ def decide(
     duals = best_duals(columns, threat.n_blinded, most_cut, budget).duals
     gap = most_cut * UNIT - duals.claim(threat.n_blinded)
     if gap < 0:
-        return Answer(is_reachable=False, level=level, following=following)
+        return Reachability(is_reachable=False, level=level, following=following)
     chosen = columns.within(duals, gap, MOST_COLUMNS)
     if chosen is None:
-        return Answer(is_reachable=None)
+        return Reachability(is_reachable=None)
     few, costs = chosen
     places = few.covers(costs, (gap, threat.n_blinded, most_cut)).next(budget, steps)
     if not isinstance(places, list):
-        return Answer(is_reachable=places, level=level, following=following)
+        return Reachability(is_reachable=places, level=level, following=following)
     covered = few.groups[places].tolist()
     blinded = sum(group ^ below.largest_inside(group) for group in covered)
-    return Answer(is_reachable=True, groups=tuple(covered), blinded=blinded)
+    return Reachability(is_reachable=True, groups=tuple(covered), blinded=blinded)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ratt_opt.attack.team import Links, Team, has_loops
+from ratt_opt.attack.team import Links, Team, has_native_kernel
 from ratt_opt.budget import OutOfBudget
 from ratt_opt.native.library import address, function
 from ratt_opt.problem import Attack
@@ -171,7 +171,7 @@ class AnnealedAttacks:
     @classmethod
     def of(cls, problem: Problem, budget: Budget) -> AnnealedAttacks | None:
         """``None`` if the objective has no compiled code."""
-        return cls(problem, budget) if has_loops(problem.objective) else None
+        return cls(problem, budget) if has_native_kernel(problem.objective) else None
 
     def attack(self, problem: Problem, plan: IntArray, moves: int, known: Attack | None = None) -> Attack | None:
         """An attack on a plan after that many moves a robot, from a known one or anew; ``None`` if none was found.

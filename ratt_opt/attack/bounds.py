@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.budget import Stop
 from ratt_opt.graph.largest_group.counting import counting_bound
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.sets_below import SetsBelow
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["UNIT", "Column", "Columns", "ColumnsRecord", "Duals", "DualsRecord"]
+__all__ = ["UNIT", "Column", "Columns", "ColumnsRecord", "DualsRecord", "IntegerDuals"]
 
 
 UNIT = 1 << 20
@@ -31,12 +31,12 @@ PART = 12
 
 
 class DualsRecord(Structure):
-    """``Duals`` of ``native/src/records.h``."""
+    """``IntegerDuals`` of ``native/src/records.h``."""
 
     _fields_: ClassVar = [("sums", c_void_p), ("unit", c_int64), ("blinding", c_int64)]
 
 
-class Duals:
+class IntegerDuals:
     """Integer duals, in units of ``1 / UNIT`` links: ``robots`` (N,) of each robot, ``blinding >= 0`` of one blinded.
 
     Robots of a group count their links from both sides: an attack's groups have two for each link that is cut.
@@ -117,14 +117,14 @@ class Columns:
         arrays = self.groups[places], self.cuts[places], self.blinded[places]
         return [Column(*of_one) for of_one in zip(*(array.tolist() for array in arrays), strict=True)]
 
-    def cheapest(self, duals: Duals) -> tuple[int, IntArray]:
+    def cheapest(self, duals: IntegerDuals) -> tuple[int, IntArray]:
         """The least reduced cost, and the columns, of one robot each, that have the least and a negative one."""
         call = function("price", c_int64, c_int, POINTER(ColumnsRecord), POINTER(DualsRecord), c_void_p)
         cheapest = np.empty(self.robots, np.int64)
         least = call(self.robots, byref(self._record), byref(duals.record), address(cheapest))
         return (int(least) if len(self) else 0), np.unique(cheapest[cheapest >= 0])
 
-    def within(self, duals: Duals, gap: int, most: int) -> tuple[Columns, IntArray] | None:
+    def within(self, duals: IntegerDuals, gap: int, most: int) -> tuple[Columns, IntArray] | None:
         """The columns of reduced cost at most ``gap``, by reduced cost, and these; ``None`` : more than ``most``."""
         given = POINTER(ColumnsRecord), POINTER(DualsRecord), *[c_int64] * 2, *[c_void_p] * 2
         room = min(most, len(self))

@@ -25,7 +25,7 @@ from ratt_opt.attack.pricing import UNIT, GroupSearch, Question
 from ratt_opt.attack.threshold_search import Answer, Threshold
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.pricing import Column, DualPrices, Plan
+    from ratt_opt.attack.pricing import DualPrices, PricedGroup, PricingProblem
     from ratt_opt.budget import Budget
 
 __all__ = ["ThresholdDecision"]
@@ -66,7 +66,7 @@ HALF = 2 * UNIT
 class ThresholdDecision:
     """Decides thresholds for one plan; what is learned about groups serves the next threshold."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: PricingProblem) -> None:
         self._plan, self._links, self.threat = plan, plan.links, plan.threat
         self.prices = GroupPrices(plan.threat)
         self._begun: tuple[Question, GroupSearch] | None = None
@@ -183,7 +183,7 @@ class ThresholdDecision:
         blind = np.any([column.blinded for column in members], axis=0)
         return Answer(verdict=Threshold.REACHED, partition=Partition(group=group, blind=blind, value=threshold))
 
-    def _covered(self, columns: list[Column], gap: int, budget: Budget) -> list[Column]:
+    def _covered(self, columns: list[PricedGroup], gap: int, budget: Budget) -> list[PricedGroup]:
         """Columns, sorted by reduced cost, that partition the team within the budgets; none if no columns do."""
         if not columns:
             return []

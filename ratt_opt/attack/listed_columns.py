@@ -1,10 +1,11 @@
-"""Is there an attack worth less than a threshold? By all groups that one may leave, if these can be listed.
+"""Decision of a threshold by all groups that an attack may leave, if these can be listed.
 
-Limits say how many robots are to blind in a column: a limit is a set of robots, and the most of these that can sense
-below the threshold (``least_sets/most_below.py``). At first there are limits for the strongest robots, any number of
-them. A linear program over all columns gives duals (``master.py``). Columns of its solution in which more robots are to
-blind than the limits say get limits of their own, which say as much of all columns that overlap them; and the program
-is solved again. At last columns of small reduced cost are few, and exact covers by them are searched.
+A limit is a set of robots, and the most of these that can sense below the threshold
+(``least_sets/max_cardinality.py``): it says how many robots must be blinded in a column. At first there are limits for
+the strongest robots, any number of them. A linear program over all columns gives duals (``master.py``). Columns of its
+solution in which more robots must be blinded than the limits say get limits of their own, which hold for all columns
+that overlap them; and the program is solved again. At last columns of small reduced cost are few, and exact covers by
+them are searched.
 
 Source: for the last step, Baldacci, Christofides and Mingozzi, Mathematical Programming 115 (2008).
 """
@@ -16,8 +17,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.annealing import Partition
-from ratt_opt.attack.columns import UNIT, Column, Columns, Duals
-from ratt_opt.attack.least_sets.most_below import MostBelow
+from ratt_opt.attack.columns import UNIT, Column, Columns, IntegerDuals
+from ratt_opt.attack.least_sets.max_cardinality import MaxCardinalityBelow
 from ratt_opt.attack.master import best_duals
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.budget import OutOfBudget, Stop
@@ -92,7 +93,7 @@ class ListedColumns:
         self._threat, self.threshold = threat, threshold
         masks, cuts = groups.so_far()
         self._columns = Columns(groups.robots, masks.copy(), cuts.copy(), np.zeros_like(cuts))
-        self._most_below = MostBelow(team, threshold, mask_of(threat.protected_robots))
+        self._cardinality = MaxCardinalityBelow(team, threshold, mask_of(threat.protected_robots))
         self._is_begun, self._restricted = False, 0
         """Flag that the strongest robots have their limits; number of limits that the columns have."""
         self._entered: list[Column] = []
@@ -102,8 +103,8 @@ class ListedColumns:
 
     @property
     def limits(self) -> list[tuple[int, int]]:
-        """Limits known so far (:class:`MostBelow`)."""
-        return self._most_below.limits
+        """Limits known so far (:class:`MaxCardinalityBelow`)."""
+        return self._cardinality.limits
 
     def decide(self, budget: Budget) -> Answer:
         """Decide the threshold, or leave it open if too many columns are within the gap.
@@ -132,7 +133,7 @@ class ListedColumns:
             if not self._has_limited(chosen, budget):
                 return Answer(verdict=Threshold.REACHED, partition=self._partition(chosen))
 
-    def duals(self, enough: int, budget: Budget) -> Duals:
+    def duals(self, enough: int, budget: Budget) -> IntegerDuals:
         """Duals under which no column below the threshold has a negative reduced cost.
 
         They claim more than ``enough`` links, counted from both sides, or what they claim is the most: limits say how
@@ -143,7 +144,7 @@ class ListedColumns:
         OutOfBudget : the budget is spent; it goes on where it ended.
         """
         if not self._is_begun:
-            self._most_below.limit_strongest(budget)
+            self._cardinality.limit_strongest(budget)
             self._is_begun = True
         while True:
             budget.spend()
@@ -161,7 +162,7 @@ class ListedColumns:
 
     def _still_possible(self) -> list[Column]:
         """Columns of the last program, with the robots that are now to blind in them."""
-        needs = [one.group.bit_count() - self._most_below.known(one.group) for one in self._entered]
+        needs = [one.group.bit_count() - self._cardinality.known(one.group) for one in self._entered]
         entered = zip(self._entered, needs, strict=True)
         return [Column(one.group, one.cut, need) for one, need in entered if need <= self._threat.n_blinded]
 
@@ -170,9 +171,9 @@ class ListedColumns:
         before = len(self.limits)
         for column in columns:
             budget.check()
-            most = self._most_below.of(column.group, budget)
-            if most < column.group.bit_count() - column.blinded and most < self._most_below.known(column.group):
-                self._most_below.limit(column.group, most, budget)
+            most = self._cardinality.of(column.group, budget)
+            if most < column.group.bit_count() - column.blinded and most < self._cardinality.known(column.group):
+                self._cardinality.limit(column.group, most, budget)
         return len(self.limits) > before
 
     def _partition(self, cover: Sequence[Column]) -> Partition:
@@ -181,7 +182,7 @@ class ListedColumns:
         label, blind = np.zeros(robots, dtype=np.int64), np.zeros(robots, dtype=np.bool_)
         for k, column in enumerate(cover):
             inside = frozenset(robots_of(column.group))
-            seeing = self._most_below.set_below(column.group, len(inside) - column.blinded)
+            seeing = self._cardinality.set_below(column.group, len(inside) - column.blinded)
             label[list(inside)] = k
             blind[list(inside - seeing)] = True
         return Partition(group=label, blind=blind, value=self.threshold)

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.columns import UNIT, Duals
+from ratt_opt.attack.columns import UNIT, IntegerDuals
 from ratt_opt.attack.pricing import DualPrices
 from ratt_opt.graph.communication import robots_of
 from ratt_opt.highs import LinearProgram, rows_of
@@ -50,7 +50,7 @@ class DualBound:
     ``used`` : columns of which the last solution takes a part
     """
 
-    duals: Duals
+    duals: IntegerDuals
     columns: list[Column]
     used: list[Column]
 
@@ -68,7 +68,7 @@ def best_duals(
     """
     n = columns.robots
     program = _program(n, n_blinded, 4.0 * (most_cut + n**2))
-    best, known, parts = Duals(np.zeros(n, np.int64), 0), dict.fromkeys(first), np.zeros(0)
+    best, known, parts = IntegerDuals(np.zeros(n, np.int64), 0), dict.fromkeys(first), np.zeros(0)
     program.add_rows(_rows(list(known), n))
     while best.claim(n_blinded) <= most_cut * UNIT:
         budget.check()
@@ -78,7 +78,7 @@ def best_duals(
             break  # HiGHS has nothing to say; what is known stays true
         least, cheapest = columns.cheapest(duals)
         if least < 0:  # every group has a robot, so that this makes up for it
-            duals = Duals(duals.robots + least, duals.blinding)
+            duals = IntegerDuals(duals.robots + least, duals.blinding)
         if duals.claim(n_blinded) > best.claim(n_blinded):
             best = duals
         fresh = [one for one in columns.some(cheapest) if one not in known]
@@ -90,10 +90,10 @@ def best_duals(
     return DualBound(best, entered, [entered[k] for k in np.flatnonzero(parts > USED)])
 
 
-def _rounded(claimed: FloatArray, n: int) -> Duals | None:
+def _rounded(claimed: FloatArray, n: int) -> IntegerDuals | None:
     if len(claimed) != n + 1 or not np.isfinite(claimed).all():
         return None
-    return Duals(np.floor(claimed[:n] * UNIT).astype(np.int64), max(int(np.ceil(claimed[n] * UNIT)), 0))
+    return IntegerDuals(np.floor(claimed[:n] * UNIT).astype(np.int64), max(int(np.ceil(claimed[n] * UNIT)), 0))
 
 
 def _rows(columns: Sequence[Column], robots: int) -> Rows:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["BLINDED", "UNIT", "Column", "DualPrices", "GroupSearch", "Plan", "Question"]
+__all__ = ["BLINDED", "UNIT", "DualPrices", "GroupSearch", "PricedGroup", "PricingProblem", "Question"]
 
 UNIT = 1 << 20
 """Unit of integer duals: one link that leaves a group."""
@@ -58,8 +58,8 @@ class QuestionRecord(Structure):
     ]
 
 
-class Plan:
-    """One plan's robots on one network; what is computed of their levels serves every question."""
+class PricingProblem:
+    """Robots of one plan on one network; all questions share the levels computed for them."""
 
     def __init__(self, team: Team, links: Links, threat: Threat) -> None:
         self.team, self.links, self.threat = team, links, threat
@@ -67,8 +67,8 @@ class Plan:
         self.least_cuts = _least_cuts(threat)
 
     @classmethod
-    def of(cls, objective: SetFunction, elements: IntArray, threat: Threat) -> Plan | None:
-        """``None`` if the loops do not have the objective."""
+    def of(cls, objective: SetFunction, elements: IntArray, threat: Threat) -> PricingProblem | None:
+        """Build the problem of one plan; ``None`` if the compiled code does not support the objective."""
         team = Team.of(objective, elements)
         return None if team is None else cls(team, Links.of(threat), threat)
 
@@ -96,7 +96,9 @@ class Plan:
         question = Question(threshold, self.robots, nothing, 0, 0, effort=effort)
         return GroupSearch(self, question, nothing)
 
-    def annealed(self, question: Question, moves: int, warm: tuple[float, float], random: c_uint64) -> Iterator[Column]:
+    def annealed(
+        self, question: Question, moves: int, warm: tuple[float, float], random: c_uint64
+    ) -> Iterator[PricedGroup]:
         """A group around each robot, annealed between two temperatures [links that leave a group]."""
         best, record = np.zeros(self.robots, dtype=np.int8), self.record(question, question.duals)
         call = function(
@@ -113,7 +115,7 @@ class Plan:
             best[:] = 0
             cost = call(byref(record), first, moves, hot, cold, byref(random), address(best))
             need = int((best == BLINDED).sum())
-            yield Column(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
+            yield PricedGroup(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
 
     def record(self, question: Question, robots: IntArray) -> QuestionRecord:
         """Record that the C code reads; all arrays that it has the addresses of must be kept alive."""
@@ -194,7 +196,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Column:
+class PricedGroup:
     """A group: ``robots``, ``blinded`` (N,); ``need`` : blinded robots, at least; ``found`` : that many are enough."""
 
     robots: BoolArray
@@ -210,7 +212,7 @@ class GroupSearch:
     ``nodes`` : so far; ``first`` : (N,) robots; groups come by the first of theirs; by default, the dearest first
     """
 
-    def __init__(self, plan: Plan, question: Question, first: IntArray | None = None) -> None:
+    def __init__(self, plan: PricingProblem, question: Question, first: IntArray | None = None) -> None:
         if first is None:
             first = np.argsort(-question.duals, kind="stable").astype(np.int64)
         self._plan, self._kept = plan, (question.duals, first)  # the record has their addresses only
@@ -236,7 +238,7 @@ class GroupSearch:
         """Searches are kept, and forgotten."""
         self.close()
 
-    def columns(self, nodes: int, room: int, budget: Budget) -> tuple[list[Column], bool]:
+    def columns(self, nodes: int, room: int, budget: Budget) -> tuple[list[PricedGroup], bool]:
         """The next groups, at most ``room``, within ``nodes`` nodes; and whether there are no others.
 
         Raises
@@ -253,7 +255,7 @@ class GroupSearch:
             chunk = 2 * chunk if monotonic() - began < GLANCE else max(chunk // 2, 1)
         rows = zip(table[0][:count], table[1][:count].tolist(), strict=True)
         columns = [
-            Column(robots=part > 0, blinded=part == BLINDED, need=need, found=found, cost=cost)
+            PricedGroup(robots=part > 0, blinded=part == BLINDED, need=need, found=found, cost=cost)
             for part, (need, found, _, cost) in rows
         ]
         return columns, is_complete

@@ -28,7 +28,7 @@ __all__ = [
     "AttackMemory",
     "AttackResult",
     "AttackTask",
-    "MeetsAim",
+    "CutoffReached",
     "PlanValues",
     "Resumable",
     "StageRecord",
@@ -133,7 +133,7 @@ CLOSED_WIDTH = 1e-10
 in different orders differ by some 1e-13; a narrower width would ask for proofs within rounding."""
 
 
-class MeetsAim(Exception):  # noqa: N818  (a signal within a search, never seen by a user)
+class CutoffReached(Exception):  # noqa: N818  (a signal within a search, never seen by a user)
     """An attack leaves the team no more than was aimed at; the bracket has it."""
 
 
@@ -162,7 +162,7 @@ class AttackBracket:
     def offer(self, attack: Attack, value: float) -> bool:
         """Keep an attack of strictly smaller value; return whether it is one.
 
-        Raises ``MeetsAim`` : no worse one is needed.
+        Raises ``CutoffReached`` : no worse one is needed.
         """
         if better := value < self.upper:
             self.attack, self.upper = attack, float(value)
@@ -170,9 +170,9 @@ class AttackBracket:
         return better
 
     def check_aim(self) -> None:
-        """Raise :class:`MeetsAim` if the attack in hand is as bad for the team as was aimed at."""
+        """Raise :class:`CutoffReached` if the attack in hand is as bad for the team as was aimed at."""
         if self.upper <= self.aim:
-            raise MeetsAim
+            raise CutoffReached
 
     def raise_lower(self, bound: float) -> None:
         """Keep a larger lower bound."""

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "TeamRecord", "has_loops", "work_of_value"]
+__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "TeamRecord", "has_native_kernel", "work_of_value"]
 
 MOST_ROBOTS = 32
 """Largest team whose subsets fit 32-bit masks; a team may have more robots."""
@@ -38,7 +38,7 @@ PLANE = 2
 """Dimension of states for which criteria are in closed form."""
 
 
-def has_loops(objective: SetFunction) -> TypeGuard[InformationObjective]:
+def has_native_kernel(objective: SetFunction) -> TypeGuard[InformationObjective]:
     """Tell whether the compiled code has the criterion and supports the dimension of its states."""
     if not isinstance(objective, InformationObjective):
         return False
@@ -71,17 +71,17 @@ class TeamRecord(Structure):
 class Team:
     """Information of the robots of one plan about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
-    ``objective`` : a criterion that the loops have; ``weights`` : (M,) its own; ``prior`` : (M, T) prior information
+    ``objective`` : a criterion of the compiled code; ``weights`` : (M,) its own; ``prior`` : (M, T) prior information
     ``information`` : (N, M, T) of each robot's element
 
     Raises
     ------
-    InputError : a shape or a type is another, or the loops do not have the objective.
+    InputError : a shape or a type is another, or the compiled code does not support the objective.
     """
 
     def __init__(self, objective: InformationObjective, prior: FloatArray, information: FloatArray) -> None:
-        if not has_loops(objective):
-            raise InputError("objective", "must be one that the loops have", type(objective).__name__)
+        if not has_native_kernel(objective):
+            raise InputError("objective", "must be one that the compiled code supports", type(objective).__name__)
         robots, targets, d = len(information), objective.n_targets, objective.dimension
         entries = d * (d + 1) // 2
         self.objective, self.robots = objective, robots
@@ -97,8 +97,8 @@ class Team:
 
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
-        """The plan's, or ``None`` if the loops do not have the objective."""
-        if not has_loops(objective):
+        """Build the team of a plan; ``None`` if the compiled code does not support the objective."""
+        if not has_native_kernel(objective):
             return None
         return cls(objective, triangles(objective.prior_information), triangles(objective.information[plan]))
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt.attack.annealing import Partition
-    from ratt_opt.attack.pricing import DualPrices, Plan
+    from ratt_opt.attack.pricing import DualPrices, PricingProblem
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.budget import Budget
 
@@ -105,7 +105,7 @@ class ThresholdSearch:
     def __init__(
         self,
         task: AttackTask,
-        plan: Plan,
+        plan: PricingProblem,
         decision: Decision,
         efforts: tuple[int, float] = (FIRST_EFFORT, inf),
         *,

@@ -34,7 +34,7 @@ AT_ONCE = 1000
 """Sets of blinded robots whose groups are valued in one batch."""
 
 
-class _Node(NamedTuple):
+class _AttackNode(NamedTuple):
     """Some robots placed; of nodes of one bound those that placed most go first."""
 
     bound: float
@@ -64,9 +64,9 @@ class AttackTree:
         self._sees = [robot in problem.protected_robots for robot in self._order]
         self._most_blind, self._most_cut = threat.n_blinded, problem.alpha_c
         self._count = 0
-        self._open = [_Node(-np.inf, len(self._order), 0, (), ())]
-        self._deep: list[_Node] = []
-        self._current: list[_Node] = []
+        self._open = [_AttackNode(-np.inf, len(self._order), 0, (), ())]
+        self._deep: list[_AttackNode] = []
+        self._current: list[_AttackNode] = []
         """The node in work, until what it is divided into is kept: whatever ends the search, none is lost."""
 
     def run(self) -> Stop:
@@ -98,7 +98,7 @@ class AttackTree:
             self._current.append(self._open[0])
             heappop(self._open)
 
-    def _divide(self, node: _Node) -> None:
+    def _divide(self, node: _AttackNode) -> None:
         """Branch on the group of one more robot, within the budgets; if all are placed, offer the attack."""
         if not node.left:
             self._offer(node)
@@ -121,11 +121,11 @@ class AttackTree:
             else:
                 heappush(self._open, child)
 
-    def _child(self, node: _Node, group: int, bound: float, *, is_blind: bool) -> _Node:
+    def _child(self, node: _AttackNode, group: int, bound: float, *, is_blind: bool) -> _AttackNode:
         self._count += 1
         blind = (*node.blind, is_blind)
         bound = max(bound, self._strongest_left(blind))
-        return _Node(bound, node.left - 1, self._count, (*node.group, group), blind)
+        return _AttackNode(bound, node.left - 1, self._count, (*node.group, group), blind)
 
     def _strongest_left(self, blind: tuple[bool, ...]) -> float:
         """The largest individual value of a robot to be placed, once the strongest that may be are blinded."""
@@ -135,7 +135,7 @@ class AttackTree:
         sure = [self._single[i] for i, sure in zip(later, sees, strict=True) if sure]
         return float(max([*free[self._most_blind - sum(blind) :][:1], *sure], default=-np.inf))
 
-    def _worth(self, node: _Node, homes: list[int]) -> list[tuple[int, float]]:
+    def _worth(self, node: _AttackNode, homes: list[int]) -> list[tuple[int, float]]:
         """Groups, and what the robots that see there are worth once the next one sees there too."""
         sets = np.zeros((len(homes), len(self._order)), dtype=np.bool_)
         sets[:, self._order[len(node.group)]] = True
@@ -144,12 +144,12 @@ class AttackTree:
                 sets[homes.index(group), robot] = True
         return list(zip(homes, self.task.values.evaluate(sets).tolist(), strict=True)) if homes else []
 
-    def _cut(self, node: _Node) -> int:
+    def _cut(self, node: _AttackNode) -> int:
         """Links between the groups of the robots placed."""
         group = node.group
         return sum(group[j] != group[k] for k in range(len(group)) for j in self._near[k])
 
-    def _offer(self, node: _Node) -> None:
+    def _offer(self, node: _AttackNode) -> None:
         parts: list[list[int]] = [[] for _ in range(max(node.group) + 1)]
         for robot, group in zip(self._order, node.group, strict=True):
             parts[group].append(robot)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bound
 from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.listed_columns import ListedSearch
-from ratt_opt.attack.pricing import Plan
+from ratt_opt.attack.pricing import PricingProblem
 from ratt_opt.attack.size_vectors.possible_sizes import LARGEST, possible_sizes_bound, unprotected_bound
-from ratt_opt.attack.size_vectors.search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers.every_attack import EveryAttack
@@ -214,7 +214,7 @@ class CriterionAttack(TeamAttack):
     @cached_property
     def _prices(self) -> ThresholdSearch | None:
         """The search by prices, new or begun, for criteria with compiled code."""
-        plan = Plan.of(self._objective, self._plan, self._threat)
+        plan = PricingProblem.of(self._objective, self._plan, self._threat)
         if plan is None:
             return None
         begun = self.task.memory.search

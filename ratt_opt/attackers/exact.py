@@ -6,14 +6,14 @@ import math
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.all_sets import sets_can_be_looked_at
+from ratt_opt.attack.all_sets import can_enumerate_subsets
 from ratt_opt.attack.staging import recorded, run_stages
 from ratt_opt.attack.task import (
     AttackBracket,
     AttackMemory,
     AttackResult,
     AttackTask,
-    MeetsAim,
+    CutoffReached,
     PlanValues,
     StageRecord,
     outward,
@@ -153,7 +153,7 @@ def strongest_attack(
         stop = _search(task, is_inner=is_inner)
     except OutOfBudget as out:
         stop = out.stop
-    except MeetsAim:
+    except CutoffReached:
         stop = Stop.GAP
     except KeyboardInterrupt:
         stop = own.interrupt()
@@ -182,7 +182,7 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     is_criterion = isinstance(task.problem.objective, InformationObjective)
     begun = task.memory.search
     if isinstance(begun, AttackTree):
-        goes_on = is_criterion or not sets_can_be_looked_at(task)
+        goes_on = is_criterion or not can_enumerate_subsets(task)
     else:
         goes_on = task.budget.seconds_left <= RENEWED * task.memory.seconds
     if begun is not None and goes_on:

@@ -1,6 +1,6 @@
 """The schedule of attacks: stages in the order in which they run, when each applies, and its share of the budget.
 
-Those of searches on complete graphs are in ``attack/size_vectors/search.py``.
+Those of searches on complete graphs are in ``attack/size_vectors/size_vector_search.py``.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ USER_FUNCTION: tuple[Stage[Team], ...] = (
     Stage("greedy steps and exchanges", Team.exchanges, Team.is_valued_at_once),
     Stage("annealed values", Team.annealed_values, Team.anneals_values, ANNEALED_SHARE),
     Stage("thresholds", Team.thresholds, Team.has_a_table),
-    Stage("branch and bound", Team.tree_for_later, Team.is_limited_and_inner),
+    Stage("branch and bound", Team.defer_branch_and_bound, Team.is_limited_and_inner),
     Stage("branch and bound", Team.tree_of_attacks, Team.is_limited),
 )
 """Set functions that are known by their values alone."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.all_sets import LARGEST_VALUED, AllSets, sets_can_be_looked_at
+from ratt_opt.attack.all_sets import LARGEST_VALUED, AllSets, can_enumerate_subsets
 from ratt_opt.attack.edge_cuts.smallest import largest_group_of
 from ratt_opt.attackers.any_function import annealed_attacks, any_bound, exchange_attack
 from ratt_opt.attackers.attack_tree import AttackTree, try_every_attack
@@ -39,7 +39,7 @@ class TeamAttack:
     def __init__(self, task: AttackTask, *, is_inner: bool) -> None:
         self.task, self.is_inner, self._threat = task, is_inner, task.problem.threat
         self._is_limited = not isinf(min(task.budget.seconds_left, task.budget.evaluations_left))
-        self._has_table = sets_can_be_looked_at(task)
+        self._has_table = can_enumerate_subsets(task)
 
     # -- what the schedule asks ----------------------------------------------------------------------------------
 
@@ -107,7 +107,7 @@ class TeamAttack:
         """Every attack, valued one by one."""
         return try_every_attack(self.task)
 
-    def tree_for_later(self) -> Stop:
+    def defer_branch_and_bound(self) -> Stop:
         """Keep a branch and bound in the memory; the next call continues it."""
         self.task.budget.check()
         self.task.memory.search = AttackTree(self.task)

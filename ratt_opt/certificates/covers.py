@@ -26,7 +26,7 @@ from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.communication import robots_of
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.pricing import Plan
+    from ratt_opt.attack.pricing import PricingProblem
     from ratt_opt.certificates.group_tree import GroupTree, Limit
     from ratt_opt.certificates.plan_sets import PlanSets
     from ratt_opt.graph.threat import Threat
@@ -70,7 +70,7 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     return {"conclusion": "cover", **record, "partition": _partition(listed, threat, slack)}
 
 
-def _searched_duals(plan: Plan, sets: PlanSets) -> LinkDuals:
+def _searched_duals(plan: PricingProblem, sets: PlanSets) -> LinkDuals:
     """Find the duals with which the attacker's search refutes the threshold."""
     from ratt_opt.attack.dual_prices import ThresholdDecision
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attack.pricing import Plan
+    from ratt_opt.attack.pricing import PricingProblem
     from ratt_opt.certificates.plan_sets import PlanSets
 
 __all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
@@ -31,7 +31,7 @@ CRITERIA, MOST_CRITERIA = 4_000_000, 256_000_000
 MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 12_000, 20_000, 1_000_000
 """Flows and listed groups of a tree; numbers in all of its flows, as the verifier reads files of two million."""
 BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded", "limit"), ("worth", "copies", "budget", "flow", "listed")
-"""Nodes by the numbers that the loops have for them."""
+"""Nodes by their numbers in the compiled code."""
 NUMBERED = (*BRANCHES, "flow")
 FINISHED, PAUSED, FULL = range(3)
 
@@ -75,7 +75,7 @@ class _Trees:
 
     def __init__(
         self,
-        plan: Plan,
+        plan: PricingProblem,
         limit: int,
         max_nodes: int,
         *,
@@ -166,7 +166,7 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Seque
     return GroupTree(trees.named((np.cumsum(trees.uses > 0) - 1).tolist()), bounds, listed, used)
 
 
-def _bound(plan: Plan, flow: IntArray) -> dict[str, Any]:
+def _bound(plan: PricingProblem, flow: IntArray) -> dict[str, Any]:
     """A bound as a certificate has it: what each link carries from its lower robot to the other."""
     links, carried = plan.links, flow[2:]
     arcs = [

@@ -17,7 +17,7 @@ from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
-    from ratt_opt.attack.pricing import Plan
+    from ratt_opt.attack.pricing import PricingProblem
     from ratt_opt.certificates.group_tree import Limit
 
 __all__ = ["LinkDuals", "duals_of_all_groups"]
@@ -43,7 +43,7 @@ class LinkDuals:
     limits: list[Limit]
 
 
-def duals_of_all_groups(plan: Plan, threshold: float) -> LinkDuals | None:
+def duals_of_all_groups(plan: PricingProblem, threshold: float) -> LinkDuals | None:
     """Return the duals; ``None`` if there are too many groups."""
     if plan.robots > LARGEST_MASK or plan.threat.alpha_c > MOST_CUT:
         return None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.pricing import Plan
+from ratt_opt.attack.pricing import PricingProblem
 from ratt_opt.attack.team import LARGEST_DIMENSION, Links, Team
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
@@ -45,7 +45,7 @@ class PlanSets:
         return self.problem.information_objective
 
     @cached_property
-    def plan(self) -> Plan:
+    def plan(self) -> PricingProblem:
         """The plan as the compiled loops read it.
 
         Raises
@@ -55,7 +55,7 @@ class PlanSets:
         if self.objective.dimension > LARGEST_DIMENSION:
             raise NotClosedError
         threat = self.problem.threat
-        return Plan(_team(self.objective, self.elements), Links.of(threat), threat)
+        return PricingProblem(_team(self.objective, self.elements), Links.of(threat), threat)
 
 
 def _team(objective: InformationObjective, elements: IntArray) -> Team:

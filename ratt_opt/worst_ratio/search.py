@@ -106,7 +106,7 @@ REACHED = 1 - 1e-9
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class _Node:
+class _RatioNode:
     bound: Fraction
     height: int
     """Minus the depth: among equal bounds the deepest comes first, so that an instance is found early."""
@@ -142,7 +142,7 @@ class RatioSearch:
         self._hit = dict(zip(groups, self.program.add(hit), strict=True))
         self._saved = dict(zip(groups, self.program.add(kept), strict=True))
         forced = frozenset(outcome[0] for outcome in skeleton.outcomes if len(outcome) == 1)
-        self.open = [_Node(floor, 0, k, attack, forced) for k, attack in enumerate(skeleton.attacks)]
+        self.open = [_RatioNode(floor, 0, k, attack, forced) for k, attack in enumerate(skeleton.attacks)]
         self._seen = {(node.attack, node.saved) for node in self.open}
 
     def run(self, budget: Budget) -> None:
@@ -156,7 +156,7 @@ class RatioSearch:
         waiting = self.open[0].bound if self.open else Fraction(1)
         return max(self.floor, min(self.closed, waiting, self.upper))
 
-    def _expand(self, node: _Node, budget: Budget) -> None:
+    def _expand(self, node: _RatioNode, budget: Budget) -> None:
         """Solve the first open node and replace it by its children."""
         claimed = self._solve(node, budget)
         bound = node.bound if claimed is None else max(node.bound, proved_bound(self.program, claimed, budget))
@@ -175,13 +175,13 @@ class RatioSearch:
             saved = frozenset(s for s in node.saved if s & group != group) | {group}
             if (node.attack, saved) not in self._seen:
                 self._seen.add((node.attack, saved))
-                heapq.heappush(self.open, _Node(bound, node.height - 1, len(self._seen), node.attack, saved))
+                heapq.heappush(self.open, _RatioNode(bound, node.height - 1, len(self._seen), node.attack, saved))
 
-    def _used(self, node: _Node) -> list[int]:
+    def _used(self, node: _RatioNode) -> list[int]:
         """Subsets whose values the node's program mentions, ascending."""
         return sorted(self._core | set(node.attack) | {group << self.skeleton.n_robots for group in node.saved})
 
-    def _solve(self, node: _Node, budget: Budget) -> ClaimedOptimum | None:
+    def _solve(self, node: _RatioNode, budget: Budget) -> ClaimedOptimum | None:
         """Solve the node's program, adding class rows until none is violated; ``None`` if HiGHS has no answer."""
         for group, row in self._hit.items():
             self.program.switch(row, on=group in node.attack)
@@ -200,7 +200,7 @@ class RatioSearch:
                 return claimed
             self.program.add(rows)
 
-    def _missed_outcome(self, node: _Node, claimed: ClaimedOptimum) -> Groups | None:
+    def _missed_outcome(self, node: _RatioNode, claimed: ClaimedOptimum) -> Groups | None:
         """Outcome in which no group of the optimal plan reaches 1, the fewest groups first."""
         groups = sorted(self._saved)
         masks = [group << self.skeleton.n_robots for group in groups]
@@ -209,7 +209,7 @@ class RatioSearch:
         missed = [outcome for outcome in self.skeleton.outcomes if not reached.intersection(outcome)]
         return min(missed, key=len) if missed else None
 
-    def _record(self, node: _Node, claimed: ClaimedOptimum) -> None:
+    def _record(self, node: _RatioNode, claimed: ClaimedOptimum) -> None:
         """Turn a solution into a rational instance; keep it when its exact ratio is the smallest so far."""
         used = self._used(node)
         for point in rational_points(self.program, claimed):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ratt_opt.attack import pricing
-from ratt_opt.attack.pricing import BLINDED, UNIT, GroupSearch, Plan, Question
+from ratt_opt.attack.pricing import BLINDED, UNIT, GroupSearch, PricingProblem, Question
 from ratt_opt.attack.team import Links
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
@@ -27,7 +27,7 @@ def _levels(request, monkeypatch):
 
 
 def plan_of(problem, plan):
-    return Plan.of(problem.objective, plan, problem.threat)
+    return PricingProblem.of(problem.objective, plan, problem.threat)
 
 
 def question_of(threshold, prices, limit, most):
@@ -97,7 +97,7 @@ def test_no_set_below_a_threshold_is_larger_than_said(seed):
     threat = Threat(CommunicationGraph(7, frozenset()), 2, 0)
     for objective in (cls(prior, information) for cls in OBJECTIVES.values()):
         sets = [s for k in range(8) for s in combinations(range(7), k)]
-        team = Plan.of(objective, np.arange(7), threat)
+        team = PricingProblem.of(objective, np.arange(7), threat)
         for share in (*rng.uniform(0, 1, 3), 0.0, 1.1):
             threshold = share * objective(range(7))
             below = {s for s in sets if objective(s) < threshold}
@@ -117,7 +117,7 @@ def test_averages_alone_are_exact_for_robots_that_are_alike(dimension, monkeypat
         alike = criterion(prior, np.repeat(information, 30, axis=0))
         worth = alike(range(12))
         if worth > 1e-6:
-            assert Plan.of(alike, np.arange(30), threat).most_below(worth * (1 - 1e-6)) <= 11
+            assert PricingProblem.of(alike, np.arange(30), threat).most_below(worth * (1 - 1e-6)) <= 11
 
 
 @pytest.mark.parametrize("seed", range(12))

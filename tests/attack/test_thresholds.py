@@ -12,7 +12,7 @@ import ratt_opt as ro
 from ratt_opt.attack import exact_cover, sets_below
 from ratt_opt.attack.all_sets import decide
 from ratt_opt.attack.annealing import AnnealRecord
-from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, Duals, DualsRecord
+from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, DualsRecord, IntegerDuals
 from ratt_opt.attack.edge_cuts.kept_links import KeptLinksRecord
 from ratt_opt.attack.exact_cover import CoverRecord, ExactCover
 from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
@@ -282,4 +282,4 @@ def test_the_same_question_has_the_same_answer():
     plan = ro.ratt(problem).elements
     found = [ro.worst_case_attack(problem, plan) for _ in range(2)]
     assert found[0] == found[1]
-    assert Duals(np.arange(3), 2).claim(1) == 1
+    assert IntegerDuals(np.arange(3), 2).claim(1) == 1

@@ -15,12 +15,12 @@ import ratt_opt as ro
 from ratt_opt.attack import all_sets
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.dual_prices import ThresholdDecision
-from ratt_opt.attack.least_sets import search as set_search
+from ratt_opt.attack.least_sets import least_set_search as set_search
 from ratt_opt.attack.listed_columns import ListedSearch
-from ratt_opt.attack.pricing import Plan
+from ratt_opt.attack.pricing import PricingProblem
 from ratt_opt.attack.size_vectors import decision as size_decision
-from ratt_opt.attack.size_vectors import search as size_vector_search
-from ratt_opt.attack.size_vectors.search import SizeVectorSearch
+from ratt_opt.attack.size_vectors import size_vector_search
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.task import AttackBracket, AttackMemory, AttackTask, PlanValues
@@ -86,7 +86,7 @@ def _packed(task: AttackTask) -> Team | None:
 
 
 def _priced(task: AttackTask) -> ThresholdSearch:
-    plan = Plan.of(task.problem.objective, task.values.plan, task.problem.threat)
+    plan = PricingProblem.of(task.problem.objective, task.values.plan, task.problem.threat)
     return ThresholdSearch(task, plan, ThresholdDecision(plan))
 
 
@@ -168,7 +168,7 @@ PACKED = {(size_decision, "PACKED"): 100, (size_decision, "NODES_OF_SET"): 1, (s
 """The other groups are packed around each largest one."""
 NO_TABLES = {
     (all_sets, "LARGEST_VALUED"): 0,
-    (all_sets, "LARGEST_LOOKED_AT"): 0,
+    (all_sets, "LARGEST_ENUMERATED"): 0,
     (team_attack, "LARGEST_VALUED"): 0,
 }
 """Sets of robots are too many to be looked at."""

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.size_vectors.disjoint_sets import Columns
+from ratt_opt.attack.size_vectors.disjoint_sets import SetColumns
 from ratt_opt.budget import Stop
 from ratt_opt.highs import LinearProgram, rows_of
 from ratt_opt.native.library import address, function
@@ -120,7 +120,7 @@ class CoverBound:
         """Return the largest cost of the sets and robots of a family below the threshold."""
         return threshold - self.bound + MARGIN * abs(threshold)
 
-    def columns(self, threshold: float) -> Columns:
+    def columns(self, threshold: float) -> SetColumns:
         """The sets that a family with all groups below the threshold may use, with their costs."""
         room, kept_potentials = self.room(threshold), np.minimum(self.potentials, self._theta)
         parts = []
@@ -134,7 +134,7 @@ class CoverBound:
         order = np.lexsort((costs, first, classes))
         keys = (classes * (n_robots + 1) + first)[order]
         places = np.arange(len(parts))[:, None] * (n_robots + 1) + np.arange(n_robots + 1)
-        return Columns(
+        return SetColumns(
             masks=masks[order],
             values=values[order],
             costs=costs[order],

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     MaskArray = NDArray[np.uint64]
 
-__all__ = ["MOST_ROBOTS", "Columns", "DisjointSets", "Filter", "Rest", "SetList", "list_sets"]
+__all__ = ["MOST_ROBOTS", "DisjointSets", "Rest", "SetColumns", "SetFilter", "SetList", "list_sets"]
 
 MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
@@ -58,7 +58,7 @@ class SetList:
 
 
 @dataclass(frozen=True, slots=True)
-class Filter:
+class SetFilter:
     """Condition on listed sets: a value below ``threshold``, and robots' ``costs`` (F,) with a sum below ``room``."""
 
     threshold: float
@@ -66,12 +66,12 @@ class Filter:
     room: float = np.inf
 
     @classmethod
-    def below(cls, threshold: float, n_robots: int) -> Filter:
+    def below(cls, threshold: float, n_robots: int) -> SetFilter:
         """No costs."""
         return cls(threshold, np.zeros(n_robots))
 
 
-def list_sets(team: Team, order: IntArray, size: int, wanted: Filter, budget: Budget) -> SetList | None:
+def list_sets(team: Team, order: IntArray, size: int, wanted: SetFilter, budget: Budget) -> SetList | None:
     """Every set of ``size`` robots that is wanted, or ``None`` if they are too many or too long to find.
 
     Parameters
@@ -99,7 +99,7 @@ def list_sets(team: Team, order: IntArray, size: int, wanted: Filter, budget: Bu
 class _Listing:
     """A search that goes on from where it ended."""
 
-    def __init__(self, team: Team, order: IntArray, size: int, wanted: Filter) -> None:
+    def __init__(self, team: Team, order: IntArray, size: int, wanted: SetFilter) -> None:
         costs = np.ascontiguousarray(wanted.costs, dtype=np.float64) if np.isfinite(wanted.room) else None
         self._search = SetSearch(team.among(order), size, wanted.threshold, costs=costs, limit=wanted.room)
         self._size, self.count = size, 0
@@ -136,7 +136,7 @@ MEMORY = 1 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Columns:
+class SetColumns:
     """Sets of each size of a vector, by their lowest robot, cheapest first.
 
     ``masks``, ``values``, ``costs`` : (K,); ``starts`` : (C, N + 1), those of size ``c`` whose lowest bit is ``r`` are
@@ -211,7 +211,7 @@ class DisjointSets:
     threshold : only families of a smaller largest value count
     """
 
-    def __init__(self, columns: Columns, rest: Rest, threshold: float) -> None:
+    def __init__(self, columns: SetColumns, rest: Rest, threshold: float) -> None:
         robots, classes = len(rest.single), len(columns.counts)
         self._columns = columns
         self._arrays = (

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.size_vectors.cover_bound import SetClasses, cover_bound
-from ratt_opt.attack.size_vectors.disjoint_sets import DisjointSets, Filter, Rest, list_sets
+from ratt_opt.attack.size_vectors.disjoint_sets import DisjointSets, Rest, SetFilter, list_sets
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -53,7 +53,7 @@ class SetLists:
     def of(self, size: int, threshold: float, budget: Budget) -> SetList | None:
         """All sets of a size below the threshold, which may only fall from call to call; ``None`` if too many."""
         if size not in self._known:
-            self._known[size] = self.wanted(size, Filter.below(threshold, len(self.order)), budget)
+            self._known[size] = self.wanted(size, SetFilter.below(threshold, len(self.order)), budget)
         known = self._known[size]
         return None if known is None else known.below(threshold)
 
@@ -61,7 +61,7 @@ class SetLists:
         """Tell whether a list is known, or sure to be short."""
         return size in self._known or comb(len(self.order), size) <= FEW_SETS
 
-    def wanted(self, size: int, wanted: Filter, budget: Budget) -> SetList | None:
+    def wanted(self, size: int, wanted: SetFilter, budget: Budget) -> SetList | None:
         """The sets that a filter lets through, of this call only."""
         return list_sets(self.team, self.order, size, wanted, budget)
 
@@ -71,7 +71,7 @@ class SetLists:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class _Node:
+class _FamilyNode:
     """Families that hold the ``chosen`` sets and others of the ``classes``; none is worth less than ``bound``."""
 
     bound: float
@@ -95,7 +95,7 @@ class FamilySearch:
         self._larger = sorted(Counter(size for size in sizes if size > 1).items(), reverse=True)
         n_rest = len(lists.order) - sum(size * count for size, count in self._larger)
         self._rest = Rest(n_rest, n_blinded, lists.single, must)
-        self._open = [_Node(-np.inf, 0, SetClasses(len(lists.order)))]
+        self._open = [_FamilyNode(-np.inf, 0, SetClasses(len(lists.order)))]
         self._serial = 0
         self._is_listed = False
         self.is_open = False
@@ -160,7 +160,7 @@ class FamilySearch:
                 self._open = [replace(self._open[0], bound=bound.bound)]
                 if bound.bound >= threshold:
                     return False
-                low = self.lists.wanted(size, Filter(threshold, bound.rest_costs, bound.room(threshold)), budget)
+                low = self.lists.wanted(size, SetFilter(threshold, bound.rest_costs, bound.room(threshold)), budget)
             else:
                 low = self.lists.of(size, threshold, budget)
                 if not k and low is not None and len(low.masks):
@@ -174,7 +174,9 @@ class FamilySearch:
         self._open = [replace(self._open[0], classes=classes)]
         return True
 
-    def _decide(self, node: _Node, budget: Budget) -> Generator[tuple[frozenset[int], ...], None, list[_Node]]:
+    def _decide(
+        self, node: _FamilyNode, budget: Budget
+    ) -> Generator[tuple[frozenset[int], ...], None, list[_FamilyNode]]:
         """Bound a node and search it; divide it if that takes long. Returns its children."""
         while node.level < self.threshold:
             classes = node.classes.where(lambda low: low.below(self.threshold))
@@ -200,7 +202,7 @@ class FamilySearch:
                 return children
         return []
 
-    def _divided(self, node: _Node, together: FloatArray) -> list[_Node]:
+    def _divided(self, node: _FamilyNode, together: FloatArray) -> list[_FamilyNode]:
         """Branch on one of a few sets, else on whether two robots are together; no children if the node is integral."""
         classes = node.classes
         c = min(range(len(classes.lists)), key=lambda d: len(classes.lists[d].masks))
@@ -222,9 +224,9 @@ class FamilySearch:
                 children.append(self._child(node, left, node.chosen, node.level))
         return children
 
-    def _child(self, node: _Node, classes: SetClasses, chosen: tuple[int, ...], level: float) -> _Node:
+    def _child(self, node: _FamilyNode, classes: SetClasses, chosen: tuple[int, ...], level: float) -> _FamilyNode:
         self._serial += 1
-        return _Node(max(node.bound, level), self._serial, classes, chosen, level)
+        return _FamilyNode(max(node.bound, level), self._serial, classes, chosen, level)
 
     def _groups(self, family: tuple[int, ...]) -> tuple[frozenset[int], ...]:
         """The groups of a family of masks, and the robots left alone."""

@@ -21,7 +21,7 @@ import numpy as np
 
 from ratt_opt.attack.size_vectors.disjoint_sets import MOST_ROBOTS
 from ratt_opt.attack.size_vectors.family_search import SetLists
-from ratt_opt.attack.size_vectors.search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket
 from ratt_opt.graph.link_scores import link_scores, scoring_group
 from ratt_opt.graph.possible_sizes import PossibleSizes

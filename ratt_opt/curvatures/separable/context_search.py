@@ -75,7 +75,7 @@ class BestContext:
 
 
 @dataclass(order=True, slots=True)
-class _Node:
+class _ContextNode:
     """A part of the contexts: ``allowed`` (K,) elements, ``absent`` (R,) owners that may contribute none."""
 
     bound: float
@@ -96,10 +96,10 @@ class ContextSearch:
         self.attained, self.nodes = attained, 0
         self._f, self._added, self._others, self._budget = f, f.information[x], others, budget
         self._serial = 0
-        self._open: list[_Node] = []
+        self._open: list[_ContextNode] = []
         count = len(others.first)
         share = 1.0 / np.bincount(others.owners, minlength=count)[others.owners]
-        root = _Node(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(count, dtype=np.bool_), share, 0)
+        root = _ContextNode(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(count, dtype=np.bool_), share, 0)
         if count and self._bound(root, FIRST_STEPS):
             self._open = [root]
         self.attained.descend(budget)
@@ -125,7 +125,7 @@ class ContextSearch:
         heapq.heapify(parts)
         self._open = parts
 
-    def _bound(self, node: _Node, steps: int) -> bool:
+    def _bound(self, node: _ContextNode, steps: int) -> bool:
         """Raise a part's bound by more tangents; whether it may still hold a smaller marginal."""
         self.nodes += 1
         others = self._others
@@ -154,7 +154,7 @@ class ContextSearch:
         hits = np.flatnonzero((score == best[self._others.owners]) & np.isfinite(score))
         return hits[np.unique(self._others.owners[hits], return_index=True)[1]]
 
-    def _children(self, node: _Node) -> list[_Node]:
+    def _children(self, node: _ContextNode) -> list[_ContextNode]:
         """Split off the likeliest element of the owner whose mixture is spread most, or its absence."""
         others = self._others
         counts = np.add.reduceat(node.allowed.astype(np.int64), others.first)
@@ -177,7 +177,7 @@ class ContextSearch:
             parts = [((node.allowed & ~mine) | chosen, False), (node.allowed & ~chosen, bool(node.absent[i]))]
         return [self._child(node, allowed, i, absent) for allowed, absent in parts]
 
-    def _child(self, node: _Node, allowed: BoolArray, i: int, absent: bool) -> _Node:
+    def _child(self, node: _ContextNode, allowed: BoolArray, i: int, absent: bool) -> _ContextNode:
         others = self._others
         left = node.absent.copy()
         left[i] = absent
@@ -189,7 +189,7 @@ class ContextSearch:
         mass = np.add.reduceat(share, others.first)
         share = share / np.where(mass > 0, mass, 1.0)[others.owners]
         self._serial += 1
-        return _Node(node.bound, self._serial, allowed, left, share, 0)
+        return _ContextNode(node.bound, self._serial, allowed, left, share, 0)
 
 
 class FloorSearch:

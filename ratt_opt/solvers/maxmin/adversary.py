@@ -12,7 +12,7 @@ from ratt_opt.attack.annealing import AnnealedAttacks
 from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
 from ratt_opt.attack.task import AttackBracket, AttackMemory
-from ratt_opt.attack.team import Team, has_loops
+from ratt_opt.attack.team import Team, has_native_kernel
 from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.budget import Budget, OutOfBudget, Stop
@@ -98,10 +98,10 @@ class LastingAttacks:
 def _at_their_best(problem: Problem) -> Team | None:
     """A team in which each robot sees every target with the element that sees that target best.
 
-    No one element need do all of that. ``None`` if the loops do not have the objective.
+    No one element need do all of that. ``None`` if the compiled code does not support the objective.
     """
     objective = problem.objective
-    if not has_loops(objective):
+    if not has_native_kernel(objective):
         return None
     information = objective.information
     traces = np.trace(information, axis1=-2, axis2=-1)

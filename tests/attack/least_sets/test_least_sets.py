@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.least_sets import search as module
+from ratt_opt.attack.least_sets import least_set_search as module
 from ratt_opt.attack.least_sets.exchanges import descended, exchanged, weak_sets_of_size
-from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis

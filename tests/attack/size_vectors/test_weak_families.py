@@ -8,7 +8,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attack import team as team_module
 from ratt_opt.attack.size_vectors import weak_families
-from ratt_opt.attack.size_vectors.search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget

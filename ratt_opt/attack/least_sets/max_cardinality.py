@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.search import LeastSetSearch
+from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.graph.communication import mask_of, robots_of
 
 if TYPE_CHECKING:
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
-__all__ = ["MostBelow"]
+__all__ = ["MaxCardinalityBelow"]
 
 NONE = -64
 """Number for a group whose protected robots alone reach the threshold: more must be blinded than there are."""
@@ -28,7 +28,7 @@ IN_DEPTH = 4_000
 take two to three times the seconds; networks of 30 robots take the same."""
 
 
-class MostBelow:
+class MaxCardinalityBelow:
     """Answers for one threshold; groups, and sets of robots, are bit masks. Protected robots of a group always sense.
 
     ``limits`` : sets, and the most of their robots that sense below the threshold in a group that contains all

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.dual_prices import ThresholdDecision
-from ratt_opt.attack.least_sets.search import LeastSetSearch
-from ratt_opt.attack.pricing import Plan
+from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
+from ratt_opt.attack.pricing import PricingProblem
 from ratt_opt.attack.size_vectors.decision import SizeDecision
 from ratt_opt.attack.size_vectors.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attack.staging import Stage, run_stages
@@ -81,7 +81,7 @@ class SizeVectorSearch:
         self.weak = WeakFamilies(task, team)
         self.families: list[GroupExchanges] = []
         self._is_about_families = False
-        self._plan = plan = Plan(team, Links.of(self.threat), self.threat)
+        self._plan = plan = PricingProblem(team, Links.of(self.threat), self.threat)
         self._decision = SizeDecision(team, self.threat, self.vectors)
         self._sizes = ThresholdSearch(task, plan, self._decision, EFFORTS, anneals=vectors is None)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.attack.columns import Columns, Duals
-from ratt_opt.attack.least_sets.most_below import NONE, MostBelow
+from ratt_opt.attack.columns import Columns, IntegerDuals
+from ratt_opt.attack.least_sets.max_cardinality import NONE, MaxCardinalityBelow
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
@@ -38,7 +38,7 @@ def most(values, threshold, protected, group):
 @pytest.mark.parametrize("seed", range(30))
 def test_answers_and_limits_are_those_of_all_sets(seed):
     team, values, threshold, protected = asked(seed)
-    answers = MostBelow(team, threshold, protected)
+    answers = MaxCardinalityBelow(team, threshold, protected)
     rng, budget = np.random.default_rng(seed), Budget()
     answers.limit_strongest(budget)
     for group in rng.permutation(np.arange(1, 2**ROBOTS))[:60].tolist():
@@ -61,7 +61,7 @@ def test_answers_and_limits_are_those_of_all_sets(seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_what_a_budget_ends_goes_on(seed):
     team, values, threshold, protected = asked(seed)
-    answers, group, pieces = MostBelow(team, threshold, protected), 2**ROBOTS - 1, 0
+    answers, group, pieces = MaxCardinalityBelow(team, threshold, protected), 2**ROBOTS - 1, 0
     truth, found = most(values, threshold, protected, group), None
     while found is None:
         try:
@@ -95,7 +95,7 @@ def test_columns_of_narrow_and_wide_masks_are_restricted_and_priced_as_by_hand(r
         assert columns.groups.tolist() == [masks[k] for k in left]
         assert columns.cuts.tolist() == [int(cuts[k]) for k in left]
         assert columns.blinded.tolist() == list(left.values())
-    duals = Duals(rng.integers(-(10**6), 10**7, robots), 7)
+    duals = IntegerDuals(rng.integers(-(10**6), 10**7, robots), 7)
     costs = [(int(cuts[k]) << 20) + 7 * left[k] - int(duals.robots[members[k]].sum()) for k in left]
     least, cheapest = columns.cheapest(duals)
     assert least == min(costs, default=0)
