@@ -33,7 +33,7 @@ def verify(
     verified: Annotated[
         bool, typer.Option("--verified", help="Ask ratt-check too, the checker extracted from its Coq proof.")
     ] = False,
-    explain: Annotated[bool, typer.Option("--explain", help="Tell the proof of the lower end in words, too.")] = False,
+    explain: Annotated[bool, typer.Option("--explain", help="Tell the proofs of both ends in words, too.")] = False,
     as_json: JsonFlag = False,
 ) -> int:
     """Check a certificate without trusting what wrote it, and say what it proves.

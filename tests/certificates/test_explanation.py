@@ -9,12 +9,22 @@ from pathlib import Path
 import networkx as nx
 import numpy as np
 import pytest
+from flint import fmpq
 
-from ratt_opt import Problem, TraceObjective, certify, random_scenario, solve_maxmin
-from ratt_opt.certificates import explanation
+from ratt_opt import (
+    Problem,
+    TraceObjective,
+    certify,
+    limited_view_scenario,
+    random_scenario,
+    solve_maxmin,
+    verify_certificate,
+)
+from ratt_opt.certificates import lower_explanation, upper_explanation
 from ratt_opt.certificates.explanation import explained
+from ratt_opt.certificates.lower_explanation import LowerStory
 from ratt_opt.cli import run
-from tests.certificates.engine import ENUMERATED, drawn, proof
+from tests.certificates.engine import ENUMERATED, drawn, proof, statement
 
 GUIDE = Path(__file__).parents[2] / "docs" / "guides" / "certificates.md"
 
@@ -49,13 +59,61 @@ def test_every_conclusion_is_told(monkeypatch, tmp_path):
     told = {"forced": explained(document), "enumerated": explained(document | {"lower": ENUMERATED})}
     for seed in range(60):
         drawn_problem, plan, worst = drawn(seed)
+        lower = worst * (1 - 1e-7)
         for kind in ("cover", "sizes"):
-            part = proof(kind, drawn_problem, plan, worst * (1 - 1e-7))
-            if part is not None:
-                record = {**document["problem"], "alpha_s": drawn_problem.alpha_s, "alpha_c": drawn_problem.alpha_c}
-                record["owners"] = drawn_problem.robot.tolist()
-                told.setdefault(part["conclusion"], explained({**document, "problem": record, "lower": part}))
-    assert set(told) == set(explanation.CONCLUSIONS)
+            part = proof(kind, drawn_problem, plan, lower)
+            if part is not None and part["conclusion"] not in told:
+                told[part["conclusion"]] = story(drawn_problem, plan, lower, part)
+    assert set(told) == set(lower_explanation.CONCLUSIONS)
     assert all(len(lines) >= 3 for lines in told.values())
-    monkeypatch.setattr(explanation, "MOST_LINES", 1)
-    assert explained(document)[-1] == f"  ... and {len(document['lower']['sets']['tree']) - 1:,} nodes more"
+    monkeypatch.setattr(lower_explanation, "MOST_LINES", 1)
+    more = [line for line in explained(document) if "nodes more" in line]
+    assert more[0] == f"  ... and {len(document['lower']['sets']['tree']) - 1:,} nodes more"
+
+
+def story(problem, plan, lower, part):
+    return LowerStory(statement(problem, plan), fmpq(*lower.as_integer_ratio())).lines(part)
+
+
+def test_numbers_of_leaves_are_those_of_the_definition():
+    """Every worth that is told of robots is that of the criterion, rounded down."""
+    told = 0
+    for seed in range(40):
+        problem, plan, worst = drawn(seed)
+        if not isinstance(problem.objective, TraceObjective):
+            continue
+        part = proof("cover", problem, plan, worst * (1 - 1e-7))
+        for line in story(problem, plan, worst * (1 - 1e-7), part) if part else []:
+            for robots, worth in re.findall(r"robots ([\d, ]+) are worth ([\d.e-]+)$", line):
+                members = [int(plan[int(i)]) for i in robots.split(", ")]
+                assert float(worth) <= problem.objective(members) * (1 + 1e-9)
+                assert float(worth) >= problem.objective(members) * (1 - 1e-5)
+                told += 1
+    assert told > 10
+
+
+def test_a_team_is_not_said_to_have_more_robots_than_it_has(monkeypatch, tmp_path):
+    for module in (lower_explanation, upper_explanation):
+        monkeypatch.setattr(module, "MOST_LINES", 10_000)
+    scenario = limited_view_scenario(6, 6, alpha_s=2, alpha_c=4, seed=1, view=60, communication_range=45)
+    problem = scenario.problem()
+    file = certify(problem, solve_maxmin(problem), tmp_path / "c.json").path
+    lines = explained(json.loads(file.read_text()))
+    sizes = [int(n) for line in lines for n in re.findall(r"Any (\d+) robots", line)]
+    assert sizes
+    assert max(sizes) <= 6
+    lemmas = lines[: lines.index("Take any group of such an attack:")]
+    assert not [line for line in lemmas if "no attack" in line]
+    claim = json.loads(file.read_text())["claim"]["upper"]
+    leaves = [float(x) for line in lines for x in re.findall(r": at most ([\d.e-]+)[:,]", line)]
+    assert len(leaves) == verify_certificate(file).upper_leaves
+    assert max(leaves) <= claim * (1 + 1e-5)
+
+
+def test_sums_of_tangents_are_their_bounds(row):
+    lines = [line for line in explained(json.loads(row.read_text())) if "by the tangent" in line]
+    assert lines
+    for line in lines:
+        bound, summed = re.search(r"at most ([\d.]+), by .*?: (.*)$", line).groups()
+        parts = [float(part.split(" (")[0]) for part in summed.split(" + ")]
+        assert sum(parts) == pytest.approx(float(bound), abs=1e-5)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     Close = Callable[["Case", object], None]
 
-__all__ = ["Case", "Cases", "mask_of", "robots_of"]
+__all__ = ["BRANCHES", "Case", "Cases", "is_short", "mask_of", "read_node", "robots_of"]
 
 BRANCHES = ("sense", "inside", "sensing", "blinded", "limit")
 PLAIN = ("worth", "copies", "budget", "listed")
@@ -124,17 +124,18 @@ class Cases:
         close: dict[str, Close] = {**known, **(closing or {})}
 
         def expand(node: object, case: Case) -> Iterator[Case]:
-            name, number = _read(node)
+            name, number = read_node(node)
             need((number is not None) == (name not in PLAIN), f"lower proof: a node is not as {name} must be")
             if name in close:
                 close[name](case, number)
             else:
                 need(name in branches, f"lower proof: a node is none of this proof: {name}")
-                yield from self._halves(name, number, case)
+                yield from self.halves(name, number, case)
 
         return walk("lower", tree, root, expand)
 
-    def _halves(self, name: str, number: object, case: Case) -> Iterator[Case]:
+    def halves(self, name: str, number: object, case: Case) -> Iterator[Case]:
+        """Yield the cases below a branch."""
         n = self.about.n
         if name == "sensing":
             count = index("lower tree sensing", number, n + 1)
@@ -187,7 +188,7 @@ class Cases:
         self.worth.require(case.known, robots_of(among), count)
 
     def _close_no_set(self, case: Case, _: object) -> None:
-        need(_is_short(case) or case.least > case.most, "lower proof: a leaf's set may have robots enough")
+        need(is_short(case) or case.least > case.most, "lower proof: a leaf's set may have robots enough")
 
     def _close_beyond(self, case: Case, _: object) -> None:
         need(self._is_beyond(case), "lower proof: a leaf's group may be part of an attack")
@@ -196,7 +197,7 @@ class Cases:
         """Test whether an attack within the budgets leaves no group of the case."""
         inside, outside, lost = case.inside, case.outside, 0
         possible = self.everyone & ~outside
-        if _is_short(case) or max(case.sensing.bit_count(), case.least) > case.most:
+        if is_short(case) or max(case.sensing.bit_count(), case.least) > case.most:
             return True
         if case.need > case.high or possible.bit_count() < case.least + case.low:
             return True
@@ -204,9 +205,9 @@ class Cases:
             lost += (self.near[i] & outside).bit_count()
             if self.tied[i] & outside:
                 return True
-        return lost > self.about.alpha_c or self._is_apart(inside, possible)
+        return lost > self.about.alpha_c or self.is_apart(inside, possible)
 
-    def _is_apart(self, inside: int, possible: int) -> bool:
+    def is_apart(self, inside: int, possible: int) -> bool:
         """Test whether robots inside are not connected by possible ones."""
         reached = front = inside & -inside
         while front:
@@ -216,12 +217,12 @@ class Cases:
         return bool(inside & ~reached)
 
 
-def _is_short(case: Case) -> bool:
+def is_short(case: Case) -> bool:
     """Test whether fewer robots may sense than must."""
     return case.sensing.bit_count() + case.may_sense.bit_count() < case.least
 
 
-def _read(node: object) -> tuple[str, object]:
+def read_node(node: object) -> tuple[str, object]:
     """The name and the number of a node."""
     if isinstance(node, str):
         return node, None

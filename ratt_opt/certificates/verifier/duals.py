@@ -66,7 +66,7 @@ class Duals:
         self.link, self.blinded = index("duals link", link, LARGEST), index("duals blinded", blinded, LARGEST)
         self.robot = [signed("duals robots", dual, LARGEST) for dual in array("duals robots", robots, self.about.n)]
         self.slack = 2 * self.link * self.about.alpha_c + self.blinded * cases.blinded - sum(self.robot)
-        self._bounds: list[_Bound] = []
+        self.bounds: list[_Bound] = []
         self._listed: dict[int, Listed] = {}
 
     @property
@@ -87,16 +87,16 @@ class Duals:
                 fits = abs(amount) <= self.link + extra or (i, j) in self.about.safe_links
                 need(fits, "lower proof: a flow exceeds what a link may carry")
                 flow[i][j], flow[j][i] = amount, -amount
-            self._bounds.append(_Bound(index("bound blinding", blinding, LARGEST), extra, flow))
+            self.bounds.append(_Bound(index("bound blinding", blinding, LARGEST), extra, flow))
 
     def close_by_flow(self, case: Case, number: object) -> None:
         """Leaf ``flow``: every group of the case costs more than the slack, or than nothing if that is negative."""
-        bound = self._bounds[index("lower tree flow", number, len(self._bounds))]
+        bound = self.bounds[index("lower tree flow", number, len(self.bounds))]
         limit = max(self.slack, -1)
-        need(self._least(case, bound) > limit, "lower proof: a group of a leaf may cost too little")
+        need(self.least(case, bound) > limit, "lower proof: a group of a leaf may cost too little")
 
-    def _least(self, case: Case, bound: _Bound) -> int:
-        """No group of the case costs less.
+    def least(self, case: Case, bound: _Bound) -> int:
+        """Return a cost below which no group of the case is.
 
         Of the links that leave it those between decided robots count, those from an open robot to decided ones, and
         from open robots to others what the flow carries. Who of the robots that may sense is blinded does not matter

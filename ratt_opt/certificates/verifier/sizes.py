@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.certificates.verifier.cases import Case
 
-__all__ = ["UNIT", "LargestGroup", "LinkCosts", "check_sizes", "largest_groups"]
+__all__ = ["UNIT", "LargestGroup", "LinkCosts", "check_sizes", "largest_groups", "possible_groups"]
 
 LARGEST = 2**31
 """Largest size of duals, costs and diagonals."""
@@ -50,6 +50,30 @@ UNIT = 2**10
 def check_sizes(cases: Cases, size: int, *given: object) -> int:
     """Check the proof: its duals, forms, bounds and trees; returns its leaves."""
     duals, forms, bounds, trees = given
+    costs, groups = possible_groups(cases, size, duals, forms)
+    known: list[tuple[int, list[int]]] = []
+    for bound in array("bounds", bounds):
+        number, diagonal = fields("bound", bound, "duals diagonal")
+        known.append((index("bound duals", number, len(costs)), _integers("bound diagonal", diagonal, cases.about.n)))
+    leaves = 0
+    for group, tree in zip(groups, array("trees", trees, len(groups)), strict=True):
+
+        def close_by_form(case: Case, number: object, group: LargestGroup = group) -> None:
+            vector, diagonal = known[index("lower tree form", number, len(known))]
+            missing = group.robots - case.inside.bit_count()
+            open_ = case.everyone & ~case.inside & ~case.outside
+            more = costs[vector].are_above(group.limits[vector], diagonal, (case.inside, open_), missing)
+            need(more, "lower proof: a group of a leaf may cost too little")
+
+        root = cases.groups(group.sensing, group.sensing, group.blinded)
+        leaves += cases.check(tree, root, {"form": close_by_form})
+    return leaves
+
+
+def possible_groups(
+    cases: Cases, size: int, duals: object, forms: object
+) -> tuple[list[LinkCosts], list[LargestGroup]]:
+    """Read the costs and their forms; return them and the sizes of a largest group that they leave."""
     about = cases.about
     if about.n > MOST_ROBOTS:
         raise UndecidedError(f"not decided: sizes of groups are for at most {MOST_ROBOTS} robots")
@@ -63,23 +87,7 @@ def check_sizes(cases: Cases, size: int, *given: object) -> int:
         number, robots, least, diagonal = fields("form", form, "duals robots least diagonal")
         one, count = costs[index("form duals", number, len(costs))], index("form robots", robots, about.n + 1)
         one.raise_least(count, signed("form least", least, LARGEST), _integers("form diagonal", diagonal, about.n))
-    known: list[tuple[int, list[int]]] = []
-    for bound in array("bounds", bounds):
-        number, diagonal = fields("bound", bound, "duals diagonal")
-        known.append((index("bound duals", number, len(costs)), _integers("bound diagonal", diagonal, about.n)))
-    groups, leaves = largest_groups(costs, cases.blinded, size), 0
-    for group, tree in zip(groups, array("trees", trees, len(groups)), strict=True):
-
-        def close_by_form(case: Case, number: object, group: LargestGroup = group) -> None:
-            vector, diagonal = known[index("lower tree form", number, len(known))]
-            missing = group.robots - case.inside.bit_count()
-            open_ = case.everyone & ~case.inside & ~case.outside
-            more = costs[vector].are_above(group.limits[vector], diagonal, (case.inside, open_), missing)
-            need(more, "lower proof: a group of a leaf may cost too little")
-
-        root = cases.groups(group.sensing, group.sensing, group.blinded)
-        leaves += cases.check(tree, root, {"form": close_by_form})
-    return leaves
+    return costs, largest_groups(costs, cases.blinded, size)
 
 
 def _integers(where: str, given: object, n: int) -> list[int]:

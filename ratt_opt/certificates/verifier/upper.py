@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["check_upper", "upper_bounds"]
+__all__ = ["Left", "UpperProof", "Winners", "check_upper", "upper_bounds"]
 
 Left = tuple[tuple[int, ...], ...]
 Winners = dict[int, frozenset[int]]
@@ -62,7 +62,7 @@ class _Cut(NamedTuple):
 
 
 class _Cover(NamedTuple):
-    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`_Proof._cover`)."""
+    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`UpperProof._cover`)."""
 
     left_out: frozenset[int]
     bound: Any
@@ -82,10 +82,10 @@ def check_upper(about: Statement, part: object, upper: fmpq) -> int:
 
 def upper_bounds(about: Statement, part: object) -> list[Any]:
     """Return each leaf's bound; together the leaves cover all plans, or ProofError."""
-    return _Proof(about, part).bounds
+    return UpperProof(about, part).bounds
 
 
-class _Proof:
+class UpperProof:
     """A proof as it is read: what its leaves name, and the ``bounds`` of its leaves.
 
     The plans of a case are a product of element sets, one per robot: those ``left``. Under attack ``a`` the team value
@@ -99,26 +99,27 @@ class _Proof:
         attacks, points, cuts, tree, *covers = fields("upper proof", part, names)
         families = array("attacks", attacks)
         reading.check_size("attacks", len(families) * about.n, reading.MOST_CELLS)
-        self._groups = [self._groups_left(attack) for attack in families]
+        self.groups = [self._groups_left(attack) for attack in families]
         self._points = self._read_points(points)
-        self._cuts = [self._cut(cut) for cut in array("cuts", cuts)]
-        self._covers = [self._cover(cover) for given in covers for cover in array("covers", given)]
+        self.cuts = [self._cut(cut) for cut in array("cuts", cuts)]
+        self.covers = [self._cover(cover) for given in covers for cover in array("covers", given)]
         self._marginals = cache(lambda: MarginalBounds(about))
         self._named: dict[int, list[tuple[int, ...]]] = {}
-        walk("upper", tree, (about.choices, {}), self._expand)
+        walk("upper", tree, (about.choices, {}), self.expand)
 
-    def _expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
+    def expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
+        """Yield the cases below a branch; append a leaf's bound."""
         left, winners = case
         name = next((name for name in NODES if isinstance(node, dict) and name in node), "element")
         if name == "part":
             a = self._number("part branch", *fields("part branch", node, name))
             need(a not in winners, "upper proof: an attack's best part is declared twice")
-            yield from ((left, {**winners, a: group}) for group in self._groups[a])
+            yield from ((left, {**winners, a: group}) for group in self.groups[a])
         elif name == "element":
             i, blocks = self._blocks(node, left)
             yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
         else:
-            leaves = {"covers": self._cover_leaf, "marginals": self._marginal_leaf, "fenchel": self._fenchel_leaf}
+            leaves = {"covers": self.cover_leaf, "marginals": self.marginal_leaf, "fenchel": self.fenchel_leaf}
             self.bounds.append(leaves[name](node, left, winners))
             if isinstance(self.bounds[-1], fmpq):
                 hold(self.bounds[-1])
@@ -138,23 +139,23 @@ class _Proof:
         need(exact_cover, f"upper proof: the children of robot {i} do not partition its elements")
         return i, blocks + [rest] * bool(rest)
 
-    def _weighed(self, node: object, name: str, known: list[Any]) -> list[tuple[fmpq, Any]]:
-        """The weights of a leaf, and what it names of what the proof has."""
+    def weighed(self, node: object, name: str, known: list[Any]) -> list[tuple[fmpq, Any]]:
+        """Return the weights of a leaf, and what it names of what the proof has."""
         chosen, given = fields("leaf", node, f"{name} weights")
         used = [known[index(f"leaf {name}", k, len(known))] for k in array(f"leaf {name}", chosen)]
         weights = [exact("leaf weight", w) for w in array("leaf weights", given, len(used))]
         return list(zip(weights, used, strict=True))
 
-    def _fenchel_leaf(self, node: object, left: Left, winners: Winners) -> Any:
-        """An average of cuts, each of the only group of an attack or of the declared winner.
+    def fenchel_leaf(self, node: object, left: Left, winners: Winners) -> Any:
+        """Return the bound by an average of cuts, each of the only group of an attack or of the declared winner.
 
         The worst case is at most that of each, so at most the constant of the average plus, robot by robot, the
         largest score among the elements left.
         """
-        pairs = self._weighed(node, "fenchel", self._cuts)
+        pairs = self.weighed(node, "fenchel", self.cuts)
         mass = total(w for w, _ in pairs)
         need(mass > 0 and all(w >= 0 for w, _ in pairs), "upper proof: a leaf's weights are negative or all zero")
-        wins = all(len(self._groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for _, cut in pairs)
+        wins = all(len(self.groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for _, cut in pairs)
         need(wins, "upper proof: a leaf uses a group that is not known to win")
         bound = total(w * cut.point.constant for w, cut in pairs)
         for i, elements in enumerate(left):
@@ -163,9 +164,9 @@ class _Proof:
             bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
         return bound / mass
 
-    def _cover_leaf(self, node: object, left: Left, _: Winners) -> Any:
-        """The largest bound of covers, one of which each plan fails: none counts their weighted sum."""
-        pairs = self._weighed(node, "covers", self._covers)
+    def cover_leaf(self, node: object, left: Left, _: Winners) -> Any:
+        """Return the largest bound of covers, one of which each plan fails: none counts their weighted sum."""
+        pairs = self.weighed(node, "covers", self.covers)
         need(pairs and all(w > 0 for w, _ in pairs), "upper proof: a leaf's weights are not positive")
         needed = min(self.about.alpha_s, self.about.n - len(self.about.safe_robots)) + 1
         most = fmpq(0)
@@ -176,12 +177,13 @@ class _Proof:
         need(most < needed * total(w for w, _ in pairs), "upper proof: a plan of a leaf may meet all its covers")
         return largest([cover.bound for _, cover in pairs])
 
-    def _marginal_leaf(self, node: object, left: Left, _: Winners) -> Any:
+    def marginal_leaf(self, node: object, left: Left, _: Winners) -> Any:
+        """Return the bound by gains: no group of the attack is worth more."""
         (attack,) = fields("marginal leaf", node, "marginals")
-        return self._marginals().bound(self._groups[self._number("marginal leaf", attack)], left)
+        return self._marginals().bound(self.groups[self._number("marginal leaf", attack)], left)
 
     def _number(self, where: str, attack: object) -> int:
-        return index(where, attack, len(self._groups))
+        return index(where, attack, len(self.groups))
 
     def _groups_left(self, attack: object) -> list[frozenset[int]]:
         """Check an attack against the budgets; return the unblinded robots of its groups, by lowest robot."""
@@ -209,7 +211,7 @@ class _Proof:
     def _cut(self, given: object) -> _Cut:
         a, g, p = array("cut", given, 3)
         attack = self._number("cut attack", a)
-        groups = self._groups[attack]
+        groups = self.groups[attack]
         return _Cut(attack, groups[index("cut group", g, len(groups))], self._point("cut point", p))
 
     def _point(self, where: str, number: object) -> _Point:
@@ -223,7 +225,7 @@ class _Proof:
         ``alpha_s + 1`` times.
         """
         attack, out, numbers = fields("cover", given, "attack left_out points")
-        groups = self._groups[self._number("cover attack", attack)]
+        groups = self.groups[self._number("cover attack", attack)]
         need(sum(map(len, groups)) == self.about.n, "upper proof: the attack of a cover blinds robots")
         left_out, bounds = frozenset(indices("cover left_out", out, len(self.about.owner))), []
         for group, p in zip(groups, array("cover points", numbers, len(groups)), strict=True):

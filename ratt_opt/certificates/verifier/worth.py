@@ -88,7 +88,7 @@ class Worth:
             return True  # at least the prior's information is worth at least phi(empty set) = 0
         if about.objective != "maxeig" or (about.d == 2 and about.is_whole):
             with ctx.workprec(precision):
-                return bool(total(sorted(self._value(x, precision) for x in cases)[:count]) >= lower * count)
+                return bool(total(sorted(self.value(x, precision) for x in cases)[:count]) >= lower * count)
         # Each case is worth it if lambda_max(C L^{-1} C') <= room / w for its targets. With L > 0 that is
         # L - (w / room) C'C >= 0: both say that [[L, C'], [C, (room / w) I]] >= 0 (Schur).
         room = about.prior_low - lower
@@ -101,8 +101,8 @@ class Worth:
         parts = zip(self._matrices(known), needed, self._units, strict=True)
         return all(definite(fmpq_mat(m) - least * fmpq(unit)) >= 0 for m, least, unit in parts)
 
-    def _value(self, known: Known, precision: int) -> Any:
-        """A lower bound on the criterion (max-eigenvalue: of two coordinates), sharper at a higher precision."""
+    def value(self, known: Known, precision: int) -> Any:
+        """Return a lower bound on the criterion (max-eigenvalue: of two coordinates), sharper at a higher precision."""
         tick()
         about = self.about
         if about.objective == "logdet":

@@ -74,7 +74,7 @@ class Drawn:
             if name == "limit":
                 number = int(self.rng.integers(len(self.cases.limits)))
             try:
-                halves = list(self.cases._halves(name, number, case))
+                halves = list(self.cases.halves(name, number, case))
             except ProofError:  # it is decided already
                 continue
             if name == "limit":
@@ -241,11 +241,11 @@ def test_partitions_by_definition(seed):
             outside = drawn.cases.everyone & ~mask
             case = drawn.cases.groups(drawn.n, blinded=None)
             for i in robots_of(mask):
-                case = next(iter(drawn.cases._halves("inside", i, case)))
+                case = next(iter(drawn.cases.halves("inside", i, case)))
             for i in robots_of(outside):
-                case = list(drawn.cases._halves("inside", i, case))[1]
+                case = list(drawn.cases.halves("inside", i, case))[1]
             if blinded:
-                case = list(drawn.cases._halves("blinded", len(blinded), case))[1]
+                case = list(drawn.cases.halves("blinded", len(blinded), case))[1]
             duals.list_group(case, None)
     listed = duals.listed
     budgets = duals.slack, drawn.threat.n_blinded, 2 * drawn.threat.alpha_c

@@ -119,7 +119,7 @@ class Forger:
             numbers = self.rng.permutation(count)
             for number in map(int, numbers):
                 try:
-                    halves = list(self.cases._halves(str(name), number, case))
+                    halves = list(self.cases.halves(str(name), number, case))
                 except ProofError:
                     continue
                 plain = [replace(half, known=case.known) == replace(case, known=case.known) for half in halves]

@@ -1,0 +1,146 @@
+"""The proof of a certificate's upper end in words: its attacks and covers, then the tree, with each leaf's numbers."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+from flint import fmpq
+
+from ratt_opt._rounding import up
+from ratt_opt.certificates.lower_explanation import MOST_LINES, listing, spans
+from ratt_opt.certificates.verifier.exact_matrices import total
+from ratt_opt.certificates.verifier.upper import UpperProof
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from ratt_opt.certificates.verifier.statement import Statement
+    from ratt_opt.certificates.verifier.upper import Left, Winners
+
+__all__ = ["upper_story"]
+
+DIGITS = 6
+COVERS = (
+    "A plan worth more than a cover's number has left-out elements at {count} robots or more, else the adversary "
+    "blinds these robots and makes the cover's attack on links."
+)
+TANGENTS = (
+    "A tangent of a group's value under an attack is a constant and a score of each element; no plan's is larger."
+)
+
+
+def upper_story(about: Statement, part: Mapping[str, Any]) -> list[str]:
+    """Say why every plan of each leaf is worth at most the claim under some attack; long trees are cut short."""
+    story = _Story(about, part)
+    lines = ["Each leaf bounds its plans by attacks:"]
+    lines += [f"Attack {k}: {text}" for k, text in enumerate(map(story.attack, part["attacks"], story.groups))]
+    lines += [story.cover_line(k, given) for k, given in enumerate(part.get("covers", []))]
+    cut = [f"  ... and {len(part['tree']) - MOST_LINES:,} nodes more"] if len(part["tree"]) > MOST_LINES else []
+    said = [TANGENTS] if part["cuts"] else []
+    said += [COVERS.format(count=story.needed)] if story.covers else []
+    return [*lines[: MOST_LINES + 1], *said, "", "Take any plan:", *story.lines, *cut]
+
+
+class _Story(UpperProof):
+    """Reads the proof as the verifier does and notes a line at each node."""
+
+    def __init__(self, about: Statement, part: Mapping[str, Any]) -> None:
+        self.lines: list[str] = []
+        self._waiting, self._reason = [(1, "")], ""
+        super().__init__(about, part)
+
+    @property
+    def needed(self) -> int:
+        """Robots with left-out elements that an attack cannot blind all."""
+        return min(self.about.alpha_s, self.about.n - len(self.about.safe_robots)) + 1
+
+    def attack(self, given: Mapping[str, Any], groups: Sequence[frozenset[int]]) -> str:
+        """Tell what an attack does and which robots still see, by group."""
+        cut = ", ".join(f"{i}-{j}" for i, j in given["links"]) or "none"
+        left = " and ".join(f"({listing(sorted(group))})" for group in groups)
+        blinded = f"robots {listing(given['robots'])}" if given["robots"] else "nobody"
+        return f"blinds {blinded}, cuts links {cut}; robots that see: {left}"
+
+    def cover_line(self, number: int, given: Mapping[str, Any]) -> str:
+        """Tell what a cover says of plans without the elements that it leaves out."""
+        bound = _number(self.covers[number].bound)
+        without = f"without elements {spans(given['left_out'])}"
+        return f"Cover {number}: under attack {given['attack']} no group {without} is worth more than {bound}"
+
+    def expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
+        """Note the node, and go on as the verifier does."""
+        depth, answer = self._waiting.pop()
+        below = list(super().expand(node, case))
+        if len(self.lines) < MOST_LINES:
+            self.lines.append("  " * depth + answer + (self._question(node, case) if below else self._reason))
+        self._waiting += [(depth + 1, f"{_answer(node, after)}: ") for after in reversed(below)]
+        yield from below
+
+    def _question(self, node: object, case: tuple[Left, Winners]) -> str:
+        assert isinstance(node, dict)
+        if "part" in node:
+            return f"which robots are the best group after attack {node['part']}?"
+        robot = node["element"]
+        return f"which of its {len(case[0][robot])} elements does robot {robot} have?"
+
+    def fenchel_leaf(self, node: object, left: Left, winners: Winners) -> Any:
+        """Note the constant and the best score of each robot, which sum to the bound."""
+        bound = super().fenchel_leaf(node, left, winners)
+        pairs = self.weighed(node, "fenchel", self.cuts)
+        mass = total(w for w, _ in pairs)
+        parts = [("", total(w * cut.point.constant for w, cut in pairs) / mass)]
+        for i, elements in enumerate(left):
+            scores = [(w, cut.point.scores) for w, cut in pairs if i in cut.group]
+            if scores:
+                parts.append((f" (robot {i})", max(total(w * s[e] for w, s in scores) / mass for e in elements)))
+        attacks = listing(dict.fromkeys(cut.attack for _, cut in pairs))
+        mean = "the tangent" if len(pairs) == 1 else f"the mean of {len(pairs)} tangents, weights {_weights(pairs)},"
+        summed = " + ".join(f"{_number(value)}{of}" for of, value in parts)
+        self._reason = f"at most {_number(bound)}, by {mean} of attack {attacks}: {summed}"
+        return bound
+
+    def cover_leaf(self, node: object, left: Left, winners: Winners) -> Any:
+        """Note which covers no plan of the leaf can meet together."""
+        bound = super().cover_leaf(node, left, winners)
+        pairs = self.weighed(node, "covers", self.covers)
+        counts = []
+        for i, elements in enumerate(left):
+            best = max(total(w for w, cover in pairs if e in cover.left_out) for e in elements)
+            counts.append((self.needed if i in self.about.safe_robots else 1) * best)
+        assert isinstance(node, dict)
+        wanted = self.needed * total(w for w, _ in pairs)
+        named = f"cover {node['covers'][0]}" if len(pairs) == 1 else f"one of covers {listing(node['covers'])}"
+        weights = "" if len(pairs) == 1 else f" (weights {_weights(pairs)})"
+        shown = " + ".join(_number(count) for count in counts)
+        self._reason = (
+            f"at most {_number(bound)}: to be worth more, a plan must count {_number(wanted)} left-out elements"
+            f"{weights}; robot by robot it counts {shown} at most, so it fails {named}"
+        )
+        return bound
+
+    def marginal_leaf(self, node: object, left: Left, winners: Winners) -> Any:
+        """Note the attack and the bound."""
+        bound = super().marginal_leaf(node, left, winners)
+        assert isinstance(node, dict)
+        self._reason = (
+            f"at most {_number(bound)}, by the largest gain of each free robot under attack {node['marginals']}"
+        )
+        return bound
+
+
+def _answer(node: object, after: tuple[Left, Winners]) -> str:
+    assert isinstance(node, dict)
+    if "part" in node:
+        return f"robots {listing(sorted(after[1][node['part']]))}"
+    return spans(after[0][node["element"]])
+
+
+def _weights(pairs: Sequence[tuple[Any, Any]]) -> str:
+    return ", ".join(_number(w) for w, _ in pairs)
+
+
+def _number(value: Any) -> str:
+    """A rational or the upper end of a ball, rounded up."""
+    exact = Fraction(int(value.p), int(value.q)) if isinstance(value, fmpq) else Fraction(float(value.upper()))
+    return up(exact, DIGITS) if exact else "0"
