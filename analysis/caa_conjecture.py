@@ -81,7 +81,7 @@ def one_run(
         "alpha_c": alpha_c,
         "objective": objective,
         "seed": seed,
-        "exact": exact.lower,  # within 1e-9 of the upper end
+        "worst": exact.lower,  # within 1e-9 of the upper end
         "even_split": evenly_split_value(problem, plan) if n_robots <= LARGEST_SPLIT else np.nan,
         "bounded_rational": bounded_rational_attack(problem, plan).upper,
         "greedy": greedy_attack(problem, plan).upper,
@@ -102,7 +102,7 @@ SHARES = ("even_split", "bounded_rational", "greedy", "random")
 
 def share(runs: list[dict[str, object]], name: str) -> np.ndarray:
     """(R,) value that one attacker leaves, over the exact worst case."""
-    return np.array([float(str(run[name])) / float(str(run["exact"])) for run in runs])
+    return np.array([float(str(run[name])) / float(str(run["worst"])) for run in runs])
 
 
 def summary(runs: list[dict[str, object]]) -> list[dict[str, object]]:

@@ -114,7 +114,7 @@ def draw(points: Sequence[Point]) -> Figure:
     return figure
 
 
-COLOURS = [PLANNERS[name].colour for name in ("maxmin", "ratt", "greedy", "nonrobust", "myopic")]
+COLOURS = [PLANNERS[name].colour for name in ("maxmin", "ratt", "greedy", "nonrobust_optimum", "myopic")]
 """Colours in the order of drawing: each curve is narrower than the last, so that equal ones lie in one another."""
 
 

@@ -32,7 +32,7 @@ PLANE = 2
 class AssessedPlan:
     """One planner's plan and its worst case: the fields of a :class:`ratt_opt.PlanAssessment`, which see."""
 
-    name: str
+    planner: str
     elements: IntArray
     controls: tuple[int, ...]
     bait: tuple[int, ...]
@@ -104,7 +104,7 @@ class Findings:
     def recommended(self) -> AssessedPlan:
         """The plan with the best proved worst case; RATT's among equals. ``views`` are of this one."""
         if "worst" in self.views:
-            return next(plan for plan in self.plans if plan.name == self.views["worst"].name)
+            return next(plan for plan in self.plans if plan.planner == self.views["worst"].planner)
         return max(self.plans, key=lambda plan: plan.worst_case.lower)
 
     @property

@@ -186,7 +186,7 @@ def rows_of(setting: Setting, managers: list[str], runs: int, steps: int) -> lis
             {
                 "platforms": setting.platforms,
                 "view": setting.view,
-                "attacker": "exact" if setting.attacked else "none",
+                "attacker": "worst" if setting.attacked else "none",
                 "manager": name,
                 "rmse_m": errors.mean(),
                 "interval": _interval(errors),
@@ -256,7 +256,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--platforms", type=int, nargs="+", choices=sorted(BLINDED), default=sorted(BLINDED))
     parser.add_argument("--views", type=int, nargs="+", default=[30, 60, 360])
-    parser.add_argument("--attackers", nargs="+", choices=["exact", "none"], default=["exact", "none"])
+    parser.add_argument("--attackers", nargs="+", choices=["worst", "none"], default=["worst", "none"])
     parser.add_argument("--runs", type=int, default=60)
     parser.add_argument("--steps", type=int, default=6)
     parser.add_argument("--managers", nargs="+", choices=MANAGERS, default=list(MANAGERS))
@@ -268,7 +268,7 @@ def main() -> None:
     print_table("What the adapter costs", speeds())
     rows: list[dict[str, Any]] = []
     for platforms, view, attacker in product(args.platforms, args.views, args.attackers):
-        found = rows_of(Setting(platforms, view, attacker == "exact"), managers, runs, steps)
+        found = rows_of(Setting(platforms, view, attacker == "worst"), managers, runs, steps)
         rows += found
         for row in found if args.log else ():
             append_csv(args.log, row)

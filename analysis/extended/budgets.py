@@ -10,12 +10,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.report.palette import look_of
+from ratt_opt.report.palette import PLANNERS, look_of
 from ratt_opt.solvers.ratt import greedy, ratt
 from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.instance import Instance
-from ratt_opt.studies.plots import LABELS, LOOKS, bands, new_figure, save
+from ratt_opt.studies.plots import bands, new_figure, save
 from ratt_opt.studies.statistics import column, estimate, select
 from ratt_opt.studies.study import Study
 
@@ -74,11 +74,11 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     for axes, case in zip(figure.subplots(1, len(STUDY.cases), sharey=True), STUDY.cases, strict=True):
         kept = select(rows, case=case.name)
         curve = excess(kept, "ratt")
-        bands(axes, range(LEVELS), curve, look=LOOKS["ratt"], label=LABELS["ratt"])
+        bands(axes, range(LEVELS), curve, look=PLANNERS["ratt"], label="ratt")
         bands(
             axes, range(LEVELS), excess(kept, "clairvoyant"), look=look_of(CLAIRVOYANT), label=CLAIRVOYANT, dashed=True
         )
-        axes.axhline(0, color=LOOKS["greedy"].colour, linestyle="--", linewidth=1.4, label=LABELS["greedy"])
+        axes.axhline(0, color=PLANNERS["greedy"].colour, linestyle="--", linewidth=1.4, label="greedy")
         axes.axvline(case.alpha_s, color="black", linestyle=":", linewidth=1, label="attack planned for")
         title = f"planned for $\\alpha_s$={case.alpha_s}, $\\alpha_c$={case.alpha_c}"
         price = f"price without attack {curve[0].mean:+.1f} %"

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 STUDY = replace(
     PAPER,
     name="exact_attack",
-    planners=("optimum", "ratt", "greedy", "random"),
-    attackers=("exact", "bounded_rational"),
+    planners=("maxmin", "ratt", "greedy", "random"),
+    attackers=("worst", "bounded_rational"),
     metrics=("value", "proved", "trace"),
     quantities=("optimum", "trace_bound"),
 )
@@ -32,18 +32,18 @@ STUDY = replace(
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """Above: trace under the exact attack. Below: how far that is, at most, above the best possible, per cent."""
     figure = new_figure(11, 6.2)
-    planners = players(rows, "trace")["exact"]
+    planners = players(rows, "trace")["worst"]
     axes = figure.subplots(2, len(SIZES), sharey="row")
     for across, (n, m) in enumerate(SIZES):
         cases = [case for case in STUDY.cases if case.n_robots == n]
         kept = [select(rows, case=case.name) for case in cases]
         groups = [f"$\\alpha_s$={case.alpha_s}\n$\\alpha_c$={case.alpha_c}" for case in cases]
-        traces = {p: [column(k, f"{p}/exact/trace") for k in kept] for p in planners}
+        traces = {p: [column(k, f"{p}/worst/trace") for k in kept] for p in planners}
         bars(axes[0, across], groups, {p: [estimate(values) for values in traces[p]] for p in planners})
         bounds = [column(k, "optimum/trace_bound") for k in kept]
         excess = {
             p: [estimate(100 * (t / bound - 1)) for t, bound in zip(traces[p], bounds, strict=True)]
-            for p in ("optimum", "ratt", "greedy")
+            for p in ("maxmin", "ratt", "greedy")
         }
         bars(axes[1, across], groups, excess)
         axes[0, across].set_title(f"N={n}, M={m}")

@@ -26,7 +26,7 @@ STUDY = Study(
         for graph in GRAPHS
     ),
     planners=("ratt", "greedy", "myopic"),
-    attackers=("exact",),
+    attackers=("worst",),
     metrics=("value", "proved"),
     quantities=("optimum",),
 )

@@ -27,7 +27,7 @@ STUDY = Study(
         for s, c in budgets(10)[::2]
     ),
     planners=("ratt", "greedy", "random"),
-    attackers=("exact",),
+    attackers=("worst",),
     metrics=("value", "proved"),
     quantities=("optimum",),
 )

@@ -30,13 +30,13 @@ def draw_ratios(
     optimum's own point is its lower bound over its upper bound: what is missing to 100 % is not decided.
     ``one_scale`` : all panels have the same vertical axis.
     """
-    planners = players(rows, "proved")["exact"]
+    planners = players(rows, "proved")["worst"]
     groups = max(map(len, panels.values()))
     figure = new_figure(1.6 + max(3.2, 0.85 * groups) * len(panels), 3.9)
     axes = figure.subplots(1, len(panels), squeeze=False, sharey=one_scale)[0]
     for panel, (title, cases) in zip(axes, panels.items(), strict=True):
         kept = [select(rows, case=case.name) for case in cases.values()]
-        proved = {"optimum": "optimum/lower", **{planner: f"{planner}/exact/proved" for planner in planners}}
+        proved = {"maxmin": "optimum/lower", **{planner: f"{planner}/worst/proved" for planner in planners}}
         ratios = {
             planner: [estimate(100 * column(k, name) / column(k, "optimum/upper")) for k in kept]
             for planner, name in proved.items()

@@ -56,7 +56,7 @@ STUDY = Study(
     name="sensitivity",
     cases=tuple(CASES.values()),
     planners=("ratt", "greedy", "random"),
-    attackers=("exact", "bounded_rational"),
+    attackers=("worst", "bounded_rational"),
     metrics=("value", "trace"),
 )
 

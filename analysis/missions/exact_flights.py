@@ -18,7 +18,7 @@ def study_of(n_robots: int, n_targets: int) -> Study:
     return Study(
         name=f"exact_flights_{n_robots}",
         cases=cases([(n_robots, n_targets)], (MODELS[0], MODELS[2])),
-        planners=("ratt", "maxmin", "nonrobust"),
+        planners=("ratt", "maxmin", "nonrobust_optimum"),
         attackers=("worst",),
         metrics=("rmse", "trace", "nees"),
         measure=measure,

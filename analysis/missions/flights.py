@@ -76,7 +76,11 @@ def measure(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     scenario = random_scenario(
         case.n_robots, case.n_targets, alpha_s=case.alpha_s, alpha_c=case.alpha_c, seed=seeds.scenario
     )
-    searched: dict[str, Planner] = {"maxmin": MAXMIN, "nonrobust": nonrobust, "random": RandomPlanner(seeds.planner)}
+    searched: dict[str, Planner] = {
+        "maxmin": MAXMIN,
+        "nonrobust_optimum": nonrobust,
+        "random": RandomPlanner(seeds.planner),
+    }
     row: dict[str, Cell] = {}
     for planner, chosen in study.named_planners.items():
         for attacker, striking in study.named_attackers.items():
@@ -116,13 +120,11 @@ MILD = Study(
     name="mild_flights",
     cases=cases(SIZES, MODELS[:2]),
     planners=("ratt", "greedy"),
-    attackers=("none", "random", "bounded rational"),
+    attackers=("none", "random", "bounded_rational"),
     metrics=("rmse", "trace", "nees"),
     measure=measure,
 )
 """Cost of planning for the worst case if nobody attacks, or an attacker who does not see what hurts most."""
-NAMES = {"maxmin": "optimum", "nonrobust": "nonrobust_optimum"}
-"""Planners whose look in figures goes by another name."""
 
 
 def draw_study(study: Study, rows: Sequence[Mapping[str, str]], folder: Path) -> None:
@@ -135,7 +137,7 @@ def draw_study(study: Study, rows: Sequence[Mapping[str, str]], folder: Path) ->
         kept = [(case, select(rows, case=case.name)) for case in study.cases if case.n_robots == n]
         groups = [f"{dict(case.options)['attacks']}\n{dict(case.options)['sharing']}" for case, _ in kept]
         for across, (attacker, planners) in enumerate(met.items()):
-            series = {NAMES.get(p, p): [estimate(column(k, f"{p}/{attacker}/rmse")) for _, k in kept] for p in planners}
+            series = {p: [estimate(column(k, f"{p}/{attacker}/rmse")) for _, k in kept] for p in planners}
             points(axes[down, across], groups, series)
             axes[down, across].set_title(f"N={n}, attacker: {attacker}")
         axes[down, 0].set_ylabel("RMSE [m]")

@@ -14,7 +14,7 @@ from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.comparison import DRAWS
 from ratt_opt.studies.instance import Instance
-from ratt_opt.studies.plots import LABELS, new_figure, save
+from ratt_opt.studies.plots import new_figure, save
 from ratt_opt.studies.statistics import select
 from ratt_opt.studies.study import Study
 
@@ -33,7 +33,7 @@ STUDY = Study(
         Case(n_robots=3, n_targets=3, alpha_s=1, alpha_c=2),
     ),
     planners=("ratt", "nonrobust_optimum"),
-    attackers=("none", "exact"),
+    attackers=("none", "worst"),
     metrics=("value", "trace", "mse"),
     measure="analysis.paper.qualitative:measure",
 )
@@ -75,7 +75,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One figure per scenario of the paper: the first trial in which the worst attack leaves the planners unequal."""
     for case, name in zip(STUDY.cases, FIGURES, strict=True):
         kept = select(rows, case=case.name)
-        shown = next((row for row in kept if row["ratt/exact/value"] != row["nonrobust_optimum/exact/value"]), kept[0])
+        shown = next((row for row in kept if row["ratt/worst/value"] != row["nonrobust_maxmin/worst/value"]), kept[0])
         cells = [(planner, attacker) for attacker in STUDY.attacker_names for planner in STUDY.planner_names]
         pictures = [json.loads(shown[f"{planner}/{attacker}/picture"]) for planner, attacker in cells]
         window = common_limits(pictures)
@@ -86,7 +86,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
             axes.set(**window)
             trace, error = float(shown[f"{planner}/{attacker}/trace"]), squared_error(picture)
             numbers = f"trace {trace:.3g} m², squared error {error:.3g} m² per target"
-            axes.set_title(f"{LABELS[planner]}, {'no attack' if attacker == 'none' else 'worst attack'}\n{numbers}")
+            axes.set_title(f"{planner}, {'no attack' if attacker == 'none' else 'worst attack'}\n{numbers}")
         figure.legend(handles=legend(), loc="outside lower center", ncols=4, frameon=False)
         save(figure, folder, name)
 

@@ -22,8 +22,8 @@ STUDY = Study(
     cases=tuple(
         Case(n_robots=4, n_targets=4, alpha_s=alpha_s, alpha_c=alpha_c) for alpha_s in (1, 2) for alpha_c in (3, 4)
     ),
-    planners=("optimum", "ratt", "nonrobust_optimum", "greedy", "random"),
-    attackers=("exact",),
+    planners=("maxmin", "ratt", "nonrobust_optimum", "greedy", "random"),
+    attackers=("worst",),
     metrics=("value", "trace", "mse"),
 )
 

@@ -16,7 +16,7 @@ problem = ro.random_scenario(6, 8, alpha_s=2, alpha_c=0, seed=1).problem()
 plans = {
     "ratt": ro.ratt(problem).elements,
     "maxmin": ro.solve_maxmin(problem, time_limit=10).elements,
-    "nonrobust": ro.nonrobust_optimum(problem).elements,
+    "nonrobust_optimum": ro.nonrobust_optimum(problem).elements,
 }
 levels = range(5)
 best = [ro.solve_maxmin(replace(problem, alpha_s=k), time_limit=10).upper for k in levels]

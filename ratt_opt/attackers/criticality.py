@@ -18,7 +18,7 @@ from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike
 
@@ -172,7 +172,7 @@ def _goal(problem: Problem, value: float | None, rms: float | None) -> float:
 @Step("the smallest budgets that break the plan")
 def breaking_budgets(
     problem: Problem,
-    elements: ArrayLike,
+    elements: ArrayLike | Callable[[Problem], ArrayLike],
     value: float | None = None,
     *,
     rms: float | None = None,
@@ -188,6 +188,9 @@ def breaking_budgets(
 
     Parameters
     ----------
+    elements : (N,) the plan; or a planner ``f(problem)``, such as :func:`ratt_opt.ratt`: each pair of budgets is then
+        asked of the plan that the team makes against it, and ``is_proved`` is about the plan against one link fewer.
+        Bisection takes for granted that a team does no worse against fewer attacks, as max-min plans do
     value : [unit of the objective]
     rms : instead of a value, the error that an attack shall exceed: root of the weighted mean over the targets of the
         traces of their posterior covariances [m]; of the trace only
@@ -199,7 +202,8 @@ def breaking_budgets(
     ------
     InputError : the plan is not one element per robot, ``value`` is not finite, or a budget is not a number >= 0.
     """
-    plan = problem.check_plan(elements)
+    if not callable(elements):
+        problem.check_plan(elements)
     goal = _goal(problem, value, rms)
     own = Budget.inside(budget, time_limit)
     found: list[BreakingBudget] = []
@@ -208,6 +212,7 @@ def breaking_budgets(
 
     def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
         stronger = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
+        plan = stronger.check_plan(elements(stronger) if callable(elements) else elements)
         return worst_case_attack(stronger, plan, max_nodes=max_nodes, budget=own.part(ATTACK_SHARE))
 
     for alpha_s in range(problem.n_robots + 1):

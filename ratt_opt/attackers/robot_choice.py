@@ -9,7 +9,7 @@ a search that protects one more robot of the worst attack at a time, over all of
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ratt_opt._validation import check_integer
 from ratt_opt._values import Shown
@@ -42,6 +42,12 @@ class BestRobots(Shown):
     after: AttackResult
     stop: Stop
     attacks: int
+
+    def to_dict(self) -> dict[str, Any]:
+        """The result as plain data."""
+        ends = {"robots": list(self.robots), "lower": self.lower, "upper": self.upper}
+        attacks = {"before": self.before.to_dict(), "after": self.after.to_dict()}
+        return {**ends, **attacks, "stop": self.stop.value, "attacks": self.attacks}
 
 
 @interruptible

@@ -10,6 +10,7 @@ from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.budget import Budget, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
+from ratt_opt.vocabulary import ByCurrentName
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -54,12 +55,14 @@ def attack_survey(
     """
     own = Budget.inside(budget, time_limit)
     seconds = None if time_limit is None else EXACT_SHARE * time_limit
-    results = {
-        "exact": worst_case_attack(problem, elements, time_limit=seconds, budget=own),
-        "bounded rational": bounded_rational_attack(problem, elements),
-        "greedy": greedy_attack(problem, elements, budget=own),
-        "random": random_attack(problem, elements, seed=seed),
-    }
+    results: ByCurrentName[AttackResult] = ByCurrentName(
+        {
+            "worst": worst_case_attack(problem, elements, time_limit=seconds, budget=own),
+            "bounded_rational": bounded_rational_attack(problem, elements),
+            "greedy": greedy_attack(problem, elements, budget=own),
+            "random": random_attack(problem, elements, seed=seed),
+        }
+    )
     plan = problem.check_plan(elements)
     for name, attacker in (attackers or {}).items():
         if name in results:

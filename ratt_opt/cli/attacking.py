@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, LatexFlag, ObjectiveOption, check_output
+from ratt_opt.cli.options import TIME_LIMIT, InputFile, JsonFlag, LatexFlag, ObjectiveOption, Planner, check_output
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_tables
 from ratt_opt.errors import InputError
 
@@ -38,6 +38,13 @@ def attack(
         float | None,
         typer.Option("--rms", help="Like --below, by accuracy: budgets that push the RMS error above this [m]."),
     ] = None,
+    replan: Annotated[
+        Planner | None,
+        typer.Option("--replan", help="Ask --below or --rms of the plan that this planner makes for each budget."),
+    ] = None,
+    protect_robots: Annotated[
+        int, typer.Option("--protect-robots", min=0, help="Number of robots to choose whose protection gains most.")
+    ] = 0,
     protect: Annotated[
         int, typer.Option("--protect", min=0, help="Number of links to choose whose protection gains most.")
     ] = 0,
@@ -57,8 +64,10 @@ def attack(
     """
     from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
+    from ratt_opt.attackers.robot_choice import robots_to_protect
     from ratt_opt.attackers.survey import attack_survey
     from ratt_opt.budget import Budget
+    from ratt_opt.missions.players.planners import PLANNERS
     from ratt_opt.report.description import describe
     from ratt_opt.report.document import attack_document
     from ratt_opt.report.tables import attack_tables
@@ -68,6 +77,8 @@ def attack(
     check_output(as_json=as_json, as_latex=as_latex)
     if below is not None and not math.isfinite(below):
         raise InputError("--below", "must be a finite number", below)
+    if replan and below is None and rms is None:
+        raise InputError("--replan", "must come with --below or --rms", replan)
     source = load_input(file)
     problem = source.problem(objective)
     elements = load_plan(plan, problem)
@@ -77,7 +88,11 @@ def attack(
     critical = _found(budget, lambda: criticality_ranking(problem, elements, **within)[:rank] if rank else None)
     budgets = None
     if below is not None or rms is not None:
-        budgets = _found(budget, lambda: breaking_budgets(problem, elements, below, rms=rms, **within))
+        asked = PLANNERS[replan] if replan else elements
+        budgets = _found(budget, lambda: breaking_budgets(problem, asked, below, rms=rms, **within))
+    robots = None
+    if protect_robots:
+        robots = _found(budget, lambda: robots_to_protect(problem, elements, protect_robots, **within))
     links: dict[str, BestLinks | None] = {}
     if protect:
         links["protect"] = _found(budget, lambda: links_to_protect(problem, elements, protect, **within))
@@ -85,15 +100,22 @@ def attack(
         near = None if reach is None else sorted(set(source.pairs_within(reach)) - problem.communication.links)
         links["add"] = _found(budget, lambda: links_to_add(problem, elements, add, candidates=near, **within))
     found = {name: best for name, best in links.items() if best is not None}
+    beside: dict[str, Any] = {"best_links": found, "best_robots": robots, "explains": explain}
     if as_json:
-        print_json(attack_document(objective, elements, results, critical, budgets, best_links=found, explains=explain))
+        print_json(attack_document(objective, elements, results, critical, budgets, **beside))
     else:
         known = describe(problem, source)
         names = [known.robot(i) for i in range(problem.n_robots)]
-        tables = attack_tables(results, critical, budgets, below, best_links=found, explains=explain, names=names)
+        tables = attack_tables(results, critical, budgets, _goal(below, rms, replan), names=names, **beside)
         print_tables(tables, latex=as_latex)
     if budget.is_over:
         raise WorkInterrupted("interrupted; printed is what was found until then")
+
+
+def _goal(below: float | None, rms: float | None, replan: str | None) -> str:
+    """The words for what the smallest budgets do."""
+    goal = f"leave less than {below}" if rms is None else f"leave an RMS error above {rms} m"
+    return f"{goal}, if the team plans anew with {replan}" if replan else goal
 
 
 def _found(budget: "Budget", search: "Callable[[], T]") -> T | None:

@@ -18,6 +18,7 @@ __all__ = [
     "Objective",
     "ObjectiveOption",
     "OutFolder",
+    "Planner",
     "check_output",
 ]
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
     Objective = str
 else:
     Objective = Literal[tuple(CLASSES)]  # the choices that help and refusals list
+
+Planner = Literal["ratt", "refined", "maxmin", "greedy", "myopic", "nonrobust_optimum", "random"]
 
 TIME_LIMIT = 60.0
 """Seconds for all searches of a command, unless the user says otherwise: as in ``ratt_opt.bound``."""

@@ -20,7 +20,7 @@ from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
 from ratt_opt.cli.replaying import replay
 from ratt_opt.cli.scenarios import new, schema
-from ratt_opt.cli.terminal import OutputError, WorkInterrupted, encode_anything, fail, flush, print_lines
+from ratt_opt.cli.terminal import OutputError, WorkInterrupted, encode_anything, fail, flush, note, print_lines
 from ratt_opt.cli.tracking import track
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 
@@ -95,7 +95,7 @@ def run_program(arguments: list[str]) -> int:
     if word := next((word for word in arguments if "\0" in word), None):  # no path can; the system's words never do
         return fail(f"a word must not hold a null character; got {word}", BAD_INPUT)
     try:
-        code = app(arguments, prog_name="ratt-opt", standalone_mode=False)
+        code = app(_with_current_names(arguments), prog_name="ratt-opt", standalone_mode=False)
         flush()
     except typer.Abort:
         raise KeyboardInterrupt from None
@@ -106,6 +106,20 @@ def run_program(arguments: list[str]) -> int:
     if code == INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
         raise KeyboardInterrupt
     return code if isinstance(code, int) else 0
+
+
+def _with_current_names(arguments: list[str]) -> list[str]:
+    """The words with today's names of planners and attackers; a note says of each that was given by a former one."""
+    from ratt_opt.vocabulary import FORMER
+
+    words = list(arguments)
+    for k, word in enumerate(words[1:], start=1):
+        before = words[k - 1]
+        for role, former in FORMER.items():
+            if before == f"--{role}" and word in former:
+                words[k] = former[word]
+                note(f"the {role} {word!r} is called {former[word]!r} now")
+    return words
 
 
 def _usage_text(error: Any, arguments: list[str]) -> str:

@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from ratt_opt.cli.options import OutFolder
+from ratt_opt.cli.options import OutFolder, Planner
 from ratt_opt.cli.terminal import print_lines, written
-from ratt_opt.cli.tracking import Planner
 from ratt_opt.running.progress import Step
 
 __all__ = ["replay"]

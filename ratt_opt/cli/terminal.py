@@ -21,6 +21,7 @@ __all__ = [
     "encode_anything",
     "fail",
     "flush",
+    "note",
     "print_json",
     "print_lines",
     "print_tables",
@@ -51,6 +52,11 @@ def fail(text: str, code: int) -> int:
     """Print an error as one line and return its exit code, also if standard error is closed."""
     _complain(f"error: {printable(text)}")
     return code
+
+
+def note(text: str) -> None:
+    """Print a note as one line to standard error."""
+    _complain(f"note: {printable(text)}")
 
 
 def print_json(document: object) -> None:

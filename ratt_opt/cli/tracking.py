@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ratt_opt.cli.options import JsonFlag, OutFolder
+from ratt_opt.cli.options import JsonFlag, OutFolder, Planner
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, written
 from ratt_opt.errors import InputError, printable
 from ratt_opt.running.progress import Step
@@ -22,8 +22,7 @@ __all__ = ["track"]
 JOURNAL = "journal.jsonl"
 """Every step's decisions, in the folder of the results: run the same command again after a kill, and it goes on."""
 
-Planner = Literal["ratt", "refined", "maxmin", "greedy", "myopic", "nonrobust", "random"]
-Attacker = Literal["none", "worst", "bounded rational", "greedy", "random"]
+Attacker = Literal["none", "worst", "bounded_rational", "greedy", "random"]
 
 
 def track(
@@ -67,6 +66,9 @@ def track(
         float | None,
         typer.Option("--time-limit", help="Seconds a step for refined or maxmin; else limited by kicks or nodes."),
     ] = None,
+    rms: Annotated[
+        float | None, typer.Option("--rms", help="Accuracy wanted [m]: say in how many steps the RMS error keeps it.")
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Seed of everything random.")] = 0,
     seeds: Annotated[int, typer.Option("--seeds", min=1, help="Missions for the figures' intervals.")] = 1,
     as_json: JsonFlag = False,
@@ -76,6 +78,7 @@ def track(
     An interrupt (Ctrl-C) keeps the steps flown and exits with 130; the same command goes on from there.
     """
     from ratt_opt._files import output_directory
+    from ratt_opt._validation import check_number
     from ratt_opt.missions.drawing.write import FILES
     from ratt_opt.missions.players.planners import MaxMinPlanner, RefinedPlanner
     from ratt_opt.missions.run import run_mission
@@ -84,6 +87,8 @@ def track(
 
     if time_limit is not None and planner not in {"maxmin", "refined"}:
         raise InputError("--time-limit", "must come with --planner maxmin or refined", planner)
+    if rms is not None:
+        check_number("--rms", rms, low=0.0)
     scenario = load_scenario(file)
     folder = output_directory(out, *FILES)
     model = MissionModel(motion=motion, sensor=sensor, linearisation=linearisation, objective=objective, beam=beam)
@@ -117,9 +122,21 @@ def track(
     with Step("tables, figures and animation"), _resumable(folder):
         files, remarks = _written(missions, folder)
     if as_json:
-        print_json(missions[0].to_dict())
+        print_json(missions[0].to_dict() | ({} if rms is None else {"accuracy": _accuracy(missions[0], rms)}))
     else:
-        print_lines([*_summary(missions), *remarks, written(files)])
+        kept = [] if rms is None else [_kept(missions, rms)]
+        print_lines([*_summary(missions), *kept, *missions[0].remarks, *remarks, written(files)])
+
+
+def _accuracy(mission: "Mission", rms: float) -> dict[str, object]:
+    """The accuracy asked for, and the steps that keep it."""
+    return {"rms": rms, "within": mission.within(rms).tolist()}
+
+
+def _kept(missions: "list[Mission]", rms: float) -> str:
+    """Number of steps of each mission whose error is as small as asked, in words."""
+    counts = ", ".join(str(int(mission.within(rms).sum())) for mission in missions)
+    return f"steps with an RMS error of at most {rms:g} m: {counts} of {len(missions[0].steps)}"
 
 
 def _written(missions: "list[Mission]", folder: Path) -> "tuple[list[Path], list[str]]":

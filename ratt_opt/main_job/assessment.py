@@ -34,7 +34,7 @@ def recommended(plans: Iterable[PlanAssessment]) -> PlanAssessment:
 
 
 def assess(
-    problem: Problem, name: str, plan: Plan, budget: Budget, known: AttackResult | None = None
+    problem: Problem, planner: str, plan: Plan, budget: Budget, known: AttackResult | None = None
 ) -> PlanAssessment:
     """Attack one plan in the worst way, unless that is ``known``, and describe the team after it."""
     elements = plan.elements
@@ -44,7 +44,7 @@ def assess(
     if isinstance(f, InformationObjective):
         posterior = readonly(np.linalg.inv(f.posterior_information(elements[sorted(seeing)])))
     return PlanAssessment(
-        name=name,
+        planner=planner,
         elements=elements,
         controls=tuple(int(np.searchsorted(own, e)) for own, e in zip(problem.choices, elements, strict=True)),
         bait=plan.bait,
@@ -65,7 +65,7 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
 
     def under(attack: Attack) -> PlanAssessment:
         found = heuristic_result(problem, PlanValues(problem, plan.elements), attack)
-        return assess(problem, worst.name, plan, budget, known=replace(found, lower=worst.worst_case.lower))
+        return assess(problem, worst.planner, plan, budget, known=replace(found, lower=worst.worst_case.lower))
 
     attacks = []
     for spared in _spared(problem, worst.worst_case.attack):

@@ -97,7 +97,7 @@ or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can
 GUARANTEES, QUICK_SECONDS = ("none", "quick", "full"), 2.0
 """Modes of the guarantees, and seconds of the quick one.
 Of six bearing-only drones the curvature took half a minute, the plan a second."""
-TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust")
+TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust_optimum")
 """Names of a report's own planners."""
 RANDOM_SEED = 0
 """Seed of the random baseline, so that a report is reproducible."""
@@ -281,7 +281,7 @@ def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator
         unattacked = nonrobust_search(problem, budget=budget.part(NONROBUST_SHARE))
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
-            yield assess(problem, "nonrobust", plan, budget.part(ATTACK_SHARE))
+            yield assess(problem, "nonrobust_optimum", plan, budget.part(ATTACK_SHARE))
 
 
 def _own_plans(
@@ -311,10 +311,10 @@ def _check_planners(planners: Mapping[str, Planner]) -> None:
 
 def _omitted(baselines: tuple[PlanAssessment, ...], guarantees: str, planners: Collection[str]) -> dict[str, str]:
     """Collect the parts that the report leaves out, with reasons."""
-    planned = {plan.name for plan in baselines}
+    planned = {plan.planner for plan in baselines}
     omitted = {name: "interrupted" for name in planners if name not in planned}
-    if all(plan.name != "nonrobust" for plan in baselines):
-        omitted["nonrobust"] = "the best plan without attack was not found and proved in its share of the time"
+    if all(plan.planner != "nonrobust_optimum" for plan in baselines):
+        omitted["nonrobust_optimum"] = "the best plan without attack was not found and proved in its share of the time"
     if guarantees == "none":
         omitted["guarantees"] = "not asked for"
     return omitted

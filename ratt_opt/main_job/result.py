@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +34,7 @@ __all__ = ["BoundReport", "PlanAssessment"]
 class PlanAssessment(AssessedPlan):
     """One planner's plan and its worst case. Two are equal if all their fields are.
 
-    ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
+    ``planner`` : its name; ``elements`` : (N,) flat element indices; ``controls`` : their positions among each robot's
     own elements; ``bait`` : RATT's bait robots, empty for other planners.
     ``groups`` : the connected groups that the worst attack leaves; ``best_group`` : the robots that still see in the
     one whose value is the team's; ``posterior`` : (M, d, d) covariances they leave, ``None`` for set
@@ -41,6 +42,12 @@ class PlanAssessment(AssessedPlan):
     """
 
     __slots__ = ()
+
+    @property
+    def name(self) -> str:
+        """The planner's name, as it was called before ``planner``; it warns."""
+        warnings.warn("PlanAssessment.name is called planner now", FutureWarning, stacklevel=2)
+        return self.planner
 
     def to_dict(self) -> dict[str, Any]:
         """The plan as plain data, as ``report.json`` has it."""
@@ -50,15 +57,17 @@ class PlanAssessment(AssessedPlan):
         return plan_view(self)
 
     def __repr__(self) -> str:
-        return f"PlanAssessment({self.name}, keeps {down(self.worst_case.lower, 8)} to {up(self.worst_case.upper, 8)})"
+        return (
+            f"PlanAssessment({self.planner}, keeps {down(self.worst_case.lower, 8)} to {up(self.worst_case.upper, 8)})"
+        )
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, PlanAssessment):
             return NotImplemented
-        return (self.name, self.to_dict()) == (other.name, other.to_dict())
+        return (self.planner, self.to_dict()) == (other.planner, other.to_dict())
 
     def __hash__(self) -> int:
-        return hash((self.name, self.controls))
+        return hash((self.planner, self.controls))
 
 
 SECONDS = 60.0

@@ -8,11 +8,12 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.missions.memory import Memory
-from ratt_opt.missions.planning import Now, TeamPlan, plan_team
+from ratt_opt.missions.planning import TeamPlan, plan_team
 from ratt_opt.missions.world import MissionModel, Threatened, World
 from ratt_opt.problem import Attack
 from ratt_opt.scenario.information_input import InformationInput, nested
 from ratt_opt.scenario.model import STATE_UNITS, Scenario
+from ratt_opt.scenario.planner_world import Now
 from ratt_opt.scenario.problem_record import near_pairs
 from ratt_opt.setfunctions.information import InformationObjective
 

@@ -11,7 +11,7 @@ from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.missions.ahead.horizon import Sequences
 from ratt_opt.missions.beam import beam_sequences
 from ratt_opt.problem import Attack, Problem
-from ratt_opt.scenario.planner_world import PlannerWorld, lengths_of
+from ratt_opt.scenario.planner_world import world_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,9 +19,10 @@ if TYPE_CHECKING:
     from ratt_opt.missions.belief import Belief
     from ratt_opt.missions.memory import Memory
     from ratt_opt.missions.world import Threatened, World
+    from ratt_opt.scenario.planner_world import Now, PlannerWorld
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Now", "Part", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team", "planner_world"]
+__all__ = ["Part", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team", "planner_world"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,16 +35,6 @@ class Part:
     elements: IntArray
     problem: Problem
     world: PlannerWorld
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Now:
-    """A step's number, its time [s], and the poses (N, p) at it; ``attacks`` so far."""
-
-    step: int
-    time: float
-    poses: FloatArray
-    attacks: tuple[tuple[int, Attack], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,22 +96,9 @@ def plan_team(world: World, memory: Memory, now: Now, threatened: Threatened) ->
 
 def planner_world(world: World, belief: Belief, sequences: Sequences, problem: Problem, now: Now) -> PlannerWorld:
     """Return the world that planners of a team's problem may look at."""
-    ahead, scenario = belief.predicted(world.motion, world.period, now.time), world.scenario
-    return PlannerWorld(
-        step=now.step,
-        time=now.time,
-        poses=readonly(now.poses),
-        ends=readonly(sequences.poses[:, 0]),
-        controls=readonly(sequences.controls[:, 0]),
-        states=ahead.mean,
-        covariances=ahead.covariance,
-        weights=np.array([target.weight for target in scenario.targets]),
-        robot_names=tuple(robot.name for robot in scenario.robots),
-        target_names=tuple(target.name for target in scenario.targets),
-        links=lengths_of(problem, now.poses),
-        robots=tuple(range(scenario.n_robots)),
-        attacks=now.attacks,
-    )
+    ahead = belief.predicted(world.motion, world.period, now.time)
+    moves = sequences.poses[:, 0], sequences.controls[:, 0]
+    return world_of(world.scenario, problem, (ahead.mean, ahead.covariance), moves, now)
 
 
 def offered_sequences(world: World, belief: Belief, poses: FloatArray, time: float) -> Sequences:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.special import gammaincinv
 
-from ratt_opt._validation import FloatArray, IntArray, check_number, readonly
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_number, readonly
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
+from ratt_opt.scenario.remarks import scenario_remarks
 
 if TYPE_CHECKING:
     from ratt_opt.missions.belief import Belief, Innovation
@@ -98,6 +99,17 @@ class FlownMission(ByValue):
         return int(self.steps[0].truth.shape[1]) if self.steps else 2
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """One line for each kind of number that can hardly be meant, and if nothing was ever measured."""
+        unseen = self.steps and not any(step.team.innovation.count for step in self.steps)
+        blind = "no measurement reached the team in any step: does a sensor see as far as the targets?"
+        return (*scenario_remarks(self.scenario), *((blind,) if unseen else ()))
+
+    def within(self, rms: float) -> BoolArray:
+        """(T,) whether the error over the targets (RMS) was at most ``rms`` [m]."""
+        return np.asarray(self.rmse <= check_number("rms", rms, low=0.0))
+
+    @property
     def squared_errors(self) -> FloatArray:
         """(T, M) squared distances of the team's estimates from the truth [m^2]."""
         errors = [step.team.belief.mean[:, :2] - step.truth[:, :2] for step in self.steps]
@@ -154,6 +166,7 @@ class FlownMission(ByValue):
             "nees_band": [low, high],
             "nis": [None if np.isnan(x) else float(x) for x in self.nis],
             "value": [step.value for step in self.steps],
+            "remarks": list(self.remarks),
             "links_short": [step.links_short for step in self.steps],
             "attacks": [step.attack.to_dict() for step in self.steps],
             "groups": [[sorted(group.robots) for group in step.groups] for step in self.steps],

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from time import perf_counter
-from types import FunctionType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,14 +18,17 @@ from ratt_opt.errors import InputError
 from ratt_opt.missions.journal import Journal
 from ratt_opt.missions.memory import Memory, Pieces
 from ratt_opt.missions.mission import Mission
-from ratt_opt.missions.planning import Now, plan_team
+from ratt_opt.missions.planning import plan_team
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
 from ratt_opt.missions.players.attackers import attack_of, attacker_called
+from ratt_opt.missions.players.named import name_of
 from ratt_opt.missions.players.planners import elements_of, planned_with, planner_called
 from ratt_opt.missions.result import GroupTrack, MissionStep
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.problem import Attack
+from ratt_opt.scenario.planner_world import Now
+from ratt_opt.vocabulary import current_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -69,10 +71,10 @@ def run_mission(
     ----------
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
     steps : T, from 1 to a million: every step is kept
-    planner : ``"ratt"``, ``"refined"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust"``, ``"random"``, or
-        ``f(problem)`` or ``f(problem, world)`` that returns a plan or its elements, such as :class:`MaxMinPlanner`;
-        ``world`` is a :class:`PlannerWorld`
-    attacker : ``"none"``, ``"worst"``, ``"bounded rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
+    planner : ``"ratt"``, ``"refined"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust_optimum"``,
+        ``"random"``, or ``f(problem)`` or ``f(problem, world)`` that returns a plan or its elements, such as
+        :class:`MaxMinPlanner`; ``world`` is a :class:`PlannerWorld`
+    attacker : ``"none"``, ``"worst"``, ``"bounded_rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
         that returns an :class:`Attack`
     attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or
         an :class:`AttackModel`
@@ -100,16 +102,14 @@ def run_mission(
     check_integer("seed", seed, low=0)
     if sharing not in SHARING:
         raise InputError("sharing", f"must be {' or '.join(SHARING)}", sharing)
+    planner, attacker = current_name("planner", planner), current_name("attacker", attacker)
     world = World(scenario, model or MissionModel(), horizon)
     players = _Players(planner_called(planner), attacker_called(attacker), attack_model(attacks))
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
-    settings = {name: value if isinstance(value, str) else _described(value) for name, value in named.items()}
+    settings = {name: _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
     log = Journal.open(journal, scenario, settings | {"model": _described(world.model)})
-    settings |= {
-        "motion": motion if isinstance(motion := world.model.motion, str) else _described(motion),
-        "area": _described(world.model.area),
-    }
+    settings |= {name: _described(getattr(world.model, name)) for name in ("motion", "area")}
     flight = _Flight(world, players, sharing, seed)
     for step in range(steps):
         flight.advance(step, log)
@@ -248,9 +248,7 @@ class _Flight:
 
 def _described(value: object) -> str:
     """A value as text, the same in every process: a function by its name, objects without their addresses."""
-    if isinstance(value, FunctionType):
-        return value.__name__
-    return re.sub(r" at 0x[0-9a-f]+", "", repr(value))
+    return re.sub(r" at 0x[0-9a-f]+", "", name_of(value))
 
 
 def _drawn(rng: np.random.Generator, covariance: FloatArray) -> FloatArray:

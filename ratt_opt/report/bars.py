@@ -56,9 +56,9 @@ def draw_bars(axes: Axes, report: Findings) -> None:
     plans = report.plans
     missing, ends, longest = bar_ends(report)
     least = NOTHING * report.upper
-    looks = looks_of([plan.name for plan in plans])
+    looks = looks_of([plan.planner for plan in plans])
     for row, (plan, (low, high)) in enumerate(zip(plans, ends, strict=True)):
-        look, chosen = looks[plan.name], plan.name == report.recommended.name
+        look, chosen = looks[plan.planner], plan.planner == report.recommended.planner
         axes.barh(row, low, color=look.colour, hatch=look.hatch, height=ROWS.thick, edgecolor="white", linewidth=0)
         if high - low > least:
             axes.errorbar((low + high) / 2, row, xerr=(high - low) / 2, color=INK, capsize=5, linewidth=1.4)
@@ -70,7 +70,7 @@ def draw_bars(axes: Axes, report: Findings) -> None:
         axes.annotate(text, (0, row - ROWS.thick / 2), fontsize=9, weight=weight, **above)
     axes.axvline(0 if missing else report.upper, color=INK, linewidth=1.6, linestyle="--")
     axes.set_title(f"no plan can have more than {up(report.upper, 6)} (dashed)", fontsize=9.5, loc="right")
-    axes.set_yticks(range(len(plans)), [in_lines(plan.name) for plan in plans])
+    axes.set_yticks(range(len(plans)), [in_lines(plan.planner) for plan in plans])
     axes.set_ylim(len(plans) - 1 + ROWS.thick, -1 + ROWS.thick / 2)  # the first on top, its number inside
     axes.set_xlim(0, ROWS.beyond * longest)
     unit = f"[{literal(report.unit)}] " if report.unit else ""

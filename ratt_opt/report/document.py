@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
     from ratt_opt.attackers.link_choice.best_links import BestLinks
+    from ratt_opt.attackers.robot_choice import BestRobots
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.findings import AssessedPlan, Findings
@@ -51,7 +52,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "n_max_upper": report.n_max_upper,
         "alpha_cs": report.alpha_cs,
         "ratt": _shared(report, report.ratt),
-        "recommended": {"planner": report.recommended.name, **_shared(report, report.recommended)},
+        "recommended": {"planner": report.recommended.planner, **_shared(report, report.recommended)},
         "optimum": {**_bracket(report), **_shared(report, report.best)},
         "interrupted": report.interrupted,
         "certificate": _certificate(report.certificate),
@@ -63,7 +64,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "omitted": dict(report.omitted),
         "remarks": list(report.remarks),
         "guaranteed_share": report.guaranteed_share,
-        "baselines": {plan.name: _shared(report, plan) for plan in report.baselines},
+        "baselines": {plan.planner: _shared(report, plan) for plan in report.baselines},
         "views": {name: plan_document(view) for name, view in report.views.items()},
         "seconds": {name: _number(value) for name, value in report.seconds.items()},
         "curvature": _curvature(report.curvature),
@@ -79,11 +80,12 @@ def attack_document(
     budgets: Sequence[BreakingBudget] | None = None,
     *,
     best_links: Mapping[str, BestLinks] | None = None,
+    best_robots: BestRobots | None = None,
     explains: bool = False,
 ) -> dict[str, Any]:
     """Return the attacks on one plan as JSON-ready values, and what to protect or add, if wanted.
 
-    ``best_links`` : by what is done with them, "protect" and "add"
+    ``best_links`` : by what is done with them, "protect" and "add"; ``best_robots`` : to protect
     ``explains`` : also which stages of the exact attack ran, and what each did
     """
     document = {
@@ -94,11 +96,13 @@ def attack_document(
         "attacks": {name: result.to_dict() for name, result in results.items()},
     }
     if explains:
-        document["stages"] = [row.to_dict() for row in results["exact"].stages]
+        document["stages"] = [row.to_dict() for row in results["worst"].stages]
     if critical:
         document["critical"] = [_critical(row) for row in critical]
     if budgets is not None:
         document["breaking_budgets"] = [_budget(row) for row in budgets]
+    if best_robots:
+        document["best_robots"] = best_robots.to_dict()
     if best_links:
         document["best_links"] = {name: found.to_dict() for name, found in best_links.items()}
     return document

@@ -50,7 +50,8 @@ def plan_figure(report: Findings, picture: Picture) -> Figure:
     share = share_text(plan.worst_case.lower, report.upper)
     share = share if share.startswith("optimal") else f"{share} of the best possible"
     figure.suptitle(
-        f"{literal(plan.name)} plan. Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
+        f"{literal(plan.planner)} plan. "
+        f"Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
         f"{len(attack.links)} of {len(report.problem.communication.links)} links cut.\n"
         f"Worst-case value {down(plan.worst_case.lower, 6)}: {share}.",
         fontsize=11.5,

@@ -40,7 +40,7 @@ def plan_view(plan: AssessedPlan) -> str:
     ]
     kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
     lost = f"{counted(len(attack.sensing), 'robot')} blinded and {counted(len(attack.links), 'link')} cut"
-    title = f"{plan.name}: keeps {kept} with {lost}"
+    title = f"{plan.planner}: keeps {kept} with {lost}"
     return html_table(title, ("robot", "element", "bait", "under attack"), rows)
 
 
@@ -48,7 +48,7 @@ def report_view(report: Findings) -> str:
     """Return the planners' table and the figure, which needs no file beside it."""
     rows = [
         (
-            plan.name,
+            plan.planner,
             bracket_text(plan.worst_case.lower, plan.worst_case.upper),
             share_text(plan.worst_case.lower, report.upper),
         )

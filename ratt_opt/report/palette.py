@@ -47,7 +47,7 @@ PLANNERS = {
     "greedy": Look("#30a574", "s", "..."),
     "myopic": Look("#86648a", "v", "xxx"),
     "random": Look("#f3c6dd", "X", "\\\\\\"),
-    "nonrobust": Look("#e69f00", "^", "++"),
+    "nonrobust_optimum": Look("#e69f00", "^", "++"),
 }
 """RATT blue and Greedy green as in the paper; the lightness of each is its own."""
 VERDICTS = {

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.attackers.criticality import BreakingBudget, Criticality
     from ratt_opt.attackers.link_choice.best_links import BestLinks
+    from ratt_opt.attackers.robot_choice import BestRobots
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.findings import Findings
     from ratt_opt.problem import Attack
@@ -50,25 +51,28 @@ def attack_tables(
     results: Mapping[str, AttackResult],
     critical: Iterable[Criticality] | None,
     budgets: Iterable[BreakingBudget] | None,
-    below: float | None,
+    goal: str,
     *,
     best_links: Mapping[str, BestLinks] | None = None,
+    best_robots: BestRobots | None = None,
     explains: bool = False,
     names: Sequence[str] = (),
 ) -> Iterable[Table]:
-    """Yield the attacks on a plan, and, if wanted, what to protect or add and what pushes it ``below`` a value.
+    """Yield the attacks on a plan, and, if wanted, what to protect or add and what pushes it past the ``goal``.
 
     ``names`` : (N,) robots for people, by their numbers where empty
-    ``best_links`` : by what is done with them, "protect" and "add"
+    ``best_links`` : by what is done with them, "protect" and "add"; ``best_robots`` : to protect
     ``explains`` : also which stages of the exact attack ran, and what each did
     """
     yield _attacks(results)
     if explains:
-        yield _stages(results["exact"])
+        yield _stages(results["worst"])
     if critical is not None:
         yield _critical(critical, names)
     if budgets is not None:
-        yield _budgets(budgets, f"{below}")
+        yield _budgets(budgets, goal)
+    if best_robots:
+        yield _best_robots(best_robots, names)
     if best_links:
         yield _best_links(best_links, names)
 
@@ -94,7 +98,7 @@ def _attacks(results: Mapping[str, AttackResult]) -> Table:
     """One row an attacker: the value its attack leaves, and the attack."""
     table = _table("attacks on the plan", "attacker", "value left", "proved worst case", "blinded robots", "cut links")
     for name, result in results.items():
-        proved = bracket_text(result.lower, result.upper) if name == "exact" else ""
+        proved = bracket_text(result.lower, result.upper) if name == "worst" else ""
         table.add_row(name, up(result.upper, 8), proved, _robots(result.attack), _links(result.attack))
     return table
 
@@ -127,11 +131,11 @@ def _critical(ranking: Iterable[Criticality], names: Sequence[str]) -> Table:
 
 def _budgets(budgets: Iterable[BreakingBudget], goal: str) -> Table:
     """One row a smallest pair of budgets that pushes the plan below a value."""
-    table = _table(f"smallest budgets that leave less than {goal}", "blinded", "links cut", "value left", "proved")
+    table = _table(f"smallest budgets that {goal}", "blinded", "links cut", "value left", "proved")
     for row in budgets:
         table.add_row(str(row.alpha_s), str(row.alpha_c), up(row.value, 8), "yes" if row.is_proved else "no")
     if not table.row_count:
-        table.caption = "no attack on what is not protected leaves less"
+        table.caption = "no attack on what is not protected does"
     return table
 
 
@@ -142,6 +146,15 @@ def _best_links(found: Mapping[str, BestLinks], names: Sequence[str]) -> Table:
         links = ", ".join(_link(link, names) for link in best.links) or "none gains anything"
         table.add_row(what, links, bracket_text(best.lower, best.after.upper), up(best.upper, 8))
         table.caption = f"without them {bracket_text(best.before.lower, best.before.upper)}; the plan is the same"
+    return table
+
+
+def _best_robots(best: BestRobots, names: Sequence[str]) -> Table:
+    """The best robots to protect from blinding, and the worst case with them."""
+    table = _table("the best robots to protect", "robots", "worst case with them", "no choice is better than")
+    robots = ", ".join(_named(robot, names) for robot in best.robots) or "none gains anything"
+    table.add_row(robots, bracket_text(best.lower, best.after.upper), up(best.upper, 8))
+    table.caption = f"without them {bracket_text(best.before.lower, best.before.upper)}; the plan is the same"
     return table
 
 
@@ -161,7 +174,7 @@ def _planners(report: Findings) -> Table:
     table = _table("planners under their worst attacks", "planner", value, "share of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(plan.worst_case.lower, report.upper)
-        name = f"{plan.name} *" if plan.name == report.recommended.name else plan.name
+        name = f"{plan.planner} *" if plan.planner == report.recommended.planner else plan.planner
         table.add_row(name, bracket_text(plan.worst_case.lower, plan.worst_case.upper), share, f"{plan.evaluations:,}")
     lines = ["* recommended: the best proved worst case", *omitted_texts(report), *report.remarks]
     table.caption = "\n".join(lines)
@@ -175,7 +188,7 @@ def omitted_texts(report: Findings) -> list[str]:
 
 def _plan(report: Findings) -> Table:
     plan, known = report.recommended, describe(report.problem, report.source)
-    table = _table(f"the {plan.name} plan and its worst attack", "robot", "element", "control", "under attack")
+    table = _table(f"the {plan.planner} plan and its worst attack", "robot", "element", "control", "under attack")
     home = {i: k for k, group in enumerate(plan.groups) for i in group}
     for i, element in enumerate(plan.elements.tolist()):
         group = f", group {home[i]} of {len(plan.groups)}" if len(plan.groups) > 1 else ""

@@ -16,7 +16,17 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["PlannerWorld", "lengths_of", "scenario_world"]
+__all__ = ["Now", "PlannerWorld", "scenario_world", "world_of"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Now:
+    """A step's number, its time [s], and the poses (N, p) at it; ``attacks`` so far."""
+
+    step: int
+    time: float
+    poses: FloatArray
+    attacks: tuple[tuple[int, Attack], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -76,7 +86,7 @@ class PlannerWorld(ByValue):
         )
 
 
-def lengths_of(problem: Problem, poses: FloatArray) -> dict[tuple[int, int], float]:
+def _lengths(problem: Problem, poses: FloatArray) -> dict[tuple[int, int], float]:
     """Links of a problem with their lengths [m], heights included."""
     places = np.delete(poses, 2, axis=1)
     links = sorted(problem.communication.links)
@@ -87,19 +97,35 @@ def lengths_of(problem: Problem, poses: FloatArray) -> dict[tuple[int, int], flo
     return dict(zip(links, apart.tolist(), strict=True))
 
 
-def scenario_world(scenario: Scenario, problem: Problem) -> PlannerWorld:
-    """The world of a scenario's one-step problem."""
+def world_of(
+    scenario: Scenario,
+    problem: Problem,
+    beliefs: tuple[FloatArray, FloatArray],
+    moves: tuple[FloatArray, FloatArray],
+    now: Now,
+) -> PlannerWorld:
+    """The world of a team's problem in one step.
+
+    ``beliefs`` : predicted states and covariances of the targets; ``moves`` : where each element leads, and its control
+    """
     return PlannerWorld(
-        step=0,
-        time=0.0,
-        poses=scenario.poses,
-        ends=scenario.predicted_poses,
-        controls=scenario.controls,
-        states=scenario.predicted_targets,
-        covariances=scenario.prior,
+        step=now.step,
+        time=now.time,
+        poses=readonly(now.poses),
+        ends=readonly(moves[0]),
+        controls=readonly(moves[1]),
+        states=beliefs[0],
+        covariances=beliefs[1],
         weights=np.array([target.weight for target in scenario.targets]),
         robot_names=tuple(robot.name for robot in scenario.robots),
         target_names=tuple(target.name for target in scenario.targets),
-        links=lengths_of(problem, scenario.poses),
+        links=_lengths(problem, now.poses),
         robots=tuple(range(scenario.n_robots)),
+        attacks=now.attacks,
     )
+
+
+def scenario_world(scenario: Scenario, problem: Problem) -> PlannerWorld:
+    """The world of a scenario's one-step problem."""
+    beliefs, moves = (scenario.predicted_targets, scenario.prior), (scenario.predicted_poses, scenario.controls)
+    return world_of(scenario, problem, beliefs, moves, Now(0, 0.0, scenario.poses))

@@ -171,7 +171,7 @@ class Instance:
 
 
 PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
-    "optimum": lambda instance: instance.optimum.elements,
+    "maxmin": lambda instance: instance.optimum.elements,
     "ratt": lambda instance: ratt(instance.problem).elements,
     "nonrobust_optimum": lambda instance: nonrobust_optimum(instance.problem).elements,
     "greedy": lambda instance: greedy(instance.problem).elements,
@@ -183,7 +183,7 @@ PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
 
 ATTACKERS: dict[str, Callable[[Instance, IntArray], Attack | AttackResult]] = {
     "none": lambda _instance, _plan: Attack(),
-    "exact": lambda instance, plan: instance.worst_case(plan),
+    "worst": lambda instance, plan: instance.worst_case(plan),
     "bounded_rational": lambda instance, plan: bounded_rational_attack(instance.problem, plan),
     "greedy": lambda instance, plan: greedy_attack(instance.problem, plan),
     "random": lambda instance, plan: random_attack(instance.problem, plan, seed=instance.seeds.attacker),

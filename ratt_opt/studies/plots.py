@@ -15,7 +15,7 @@ from ratt_opt.report.palette import PLANNERS, looks_of
 from ratt_opt.studies.statistics import headed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from matplotlib.axes import Axes
@@ -25,28 +25,9 @@ if TYPE_CHECKING:
     from ratt_opt.report.palette import Look
     from ratt_opt.studies.statistics import Estimate, Mean
 
-__all__ = ["IN_TURN", "LABELS", "LOOKS", "bands", "bars", "comparison", "new_figure", "points", "save", "use_palette"]
+__all__ = ["IN_TURN", "bands", "bars", "comparison", "new_figure", "points", "save", "use_palette"]
 
-LOOKS = {
-    "optimum": PLANNERS["maxmin"],
-    "nonrobust_optimum": PLANNERS["nonrobust"],
-    **{name: PLANNERS[name] for name in ("ratt", "greedy", "random", "myopic")},
-}
-"""The library's own, so that a planner looks the same in every figure."""
-LIBRARY = {"optimum": "maxmin", "nonrobust_optimum": "nonrobust"}
-"""Planners of studies that the library's other figures call otherwise."""
-LABELS = {
-    "optimum": "OPT",
-    "ratt": "RATT",
-    "nonrobust_optimum": "NR-OPT",
-    "greedy": "Greedy",
-    "random": "Random",
-    "myopic": "Myopic",
-}
-"""Names of planners in the paper; others go by their own names."""
-
-
-IN_TURN = [PLANNERS[name].colour for name in ("ratt", "nonrobust", "greedy", "maxmin", "random", "myopic")]
+IN_TURN = [PLANNERS[name].colour for name in ("ratt", "nonrobust_optimum", "greedy", "maxmin", "random", "myopic")]
 """Colours of plain curves and bars, one after the other: neighbours differ in lightness too."""
 
 
@@ -71,10 +52,10 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
     Bars start at zero, which belongs to the picture.
     """
     error = {"elinewidth": 0.9, "ecolor": "#222222"}
-    looks = _looks(series)
+    looks = looks_of(list(series))
     for at, width, planner, means, spread in _side_by_side(axes, groups, series):
         look: dict[str, Any] = {"color": looks[planner].colour, "hatch": looks[planner].hatch, "edgecolor": "white"}
-        look |= {"linewidth": 0, "label": _label(planner)}
+        look |= {"linewidth": 0, "label": literal(planner)}
         drawn = axes.bar(at, means, 0.9 * width, yerr=spread, capsize=2, error_kw=error, **look)
         assert drawn.errorbar is not None
         _, caps, lines = drawn.errorbar.lines
@@ -85,14 +66,14 @@ def bars(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estima
 
 def points(axes: Axes, groups: Sequence[str], series: Mapping[str, Sequence[Estimate]]) -> None:
     """Draw what :func:`bars` draws, as points: for numbers far from zero that differ little."""
-    looks = _looks(series)
+    looks = looks_of(list(series))
     for at, _, planner, means, spread in _side_by_side(axes, groups, series):
         look: dict[str, Any] = {
             "color": looks[planner].colour,
             "fmt": looks[planner].marker,
             "markeredgecolor": "#222222",
         }
-        axes.errorbar(at, means, spread, label=_label(planner), ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look)
+        axes.errorbar(at, means, spread, label=literal(planner), ms=5.5, mew=0.5, ecolor="#222222", capsize=3, **look)
 
 
 def comparison(means: Sequence[Mean], note: str, unit: str = "") -> Figure:
@@ -126,12 +107,8 @@ def comparison(means: Sequence[Mean], note: str, unit: str = "") -> Figure:
 
 def _quantity(mean: Mean, unit: str) -> str:
     """The words of the axis: the metric with its unit, and whose is taken off."""
-    minus = f"\ndifference from {_label(mean.minus)}" if mean.minus else ""
+    minus = f"\ndifference from {literal(mean.minus)}" if mean.minus else ""
     return literal(headed(mean.metric, unit)) + minus
-
-
-def _label(planner: str) -> str:
-    return LABELS.get(planner) or literal(planner)
 
 
 def _told_apart(cases: Sequence[str]) -> tuple[str, list[str]]:
@@ -146,13 +123,6 @@ def _told_apart(cases: Sequence[str]) -> tuple[str, list[str]]:
 def _part(part: str) -> str:
     """A part of a case's name with the paper's symbols."""
     return in_symbols(literal(part))
-
-
-def _looks(planners: Iterable[str]) -> dict[str, Look]:
-    """The look of each planner of a figure, also of those that are the user's own."""
-    names = list(planners)
-    looks = looks_of([LIBRARY.get(name, name) for name in names])
-    return {name: looks[LIBRARY.get(name, name)] for name in names}
 
 
 def _side_by_side(

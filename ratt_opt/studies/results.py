@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Results"]
 
-AT_LEAST_ZERO = ("value", "proved", "trace", "mse", "rmse", "nees")
+AT_LEAST_ZERO = ("value", "proved", "trace", "mse", "rmse", "final", "largest", "nees")
 """Metrics that are never negative: neither is what is said of their means."""
 TABLES, FIGURES = ("means.csv", "means.tex"), ("means.png", "means.svg")
 COLUMNS = ("case", "planner", "attacker", "metric", "mean", "low", "high", "trials")

@@ -19,7 +19,7 @@ __all__ = ["Estimate", "Mean", "Verdict", "column", "estimate", "headed", "judge
 
 LEVEL = 0.95
 """Confidence of every interval."""
-UNITS = {"trace": "m²", "mse": "m²", "rmse": "m"}
+UNITS = {"trace": "m²", "mse": "m²", "rmse": "m", "final": "m", "largest": "m"}
 """Units of metrics; values have that of their criterion,"""
 VALUES = ("value", "proved")
 """and these are values."""

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 from ratt_opt._files import output_directory, output_file, write_atomically, write_json
 from ratt_opt.errors import InputError
 from ratt_opt.studies.versions import VERSIONS
+from ratt_opt.vocabulary import current_column
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -100,7 +101,7 @@ def open_journal(study: Study, folder: Path, *, accept_old_rows: bool = False) -
 
 
 def read_table(folder: Path) -> list[dict[str, str]]:
-    """Return the rows of a finished study, sorted by case and trial.
+    """Return the rows of a finished study, sorted by case and trial; columns of former names go by those of today.
 
     Raises
     ------
@@ -110,7 +111,8 @@ def read_table(folder: Path) -> list[dict[str, str]]:
         text = (folder / TABLE).read_text(encoding="utf-8")
     except OSError as error:
         raise InputError("results", "must hold a finished table", f"{folder / TABLE} ({error.strerror})") from None
-    return list(csv.DictReader(io.StringIO(text)))
+    rows = list(csv.DictReader(io.StringIO(text)))
+    return [{current_column(name): cell for name, cell in row.items()} for row in rows]
 
 
 def _opened(path: Path) -> TextIO:

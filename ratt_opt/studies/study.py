@@ -12,10 +12,12 @@ from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ratt_opt.errors import InputError
+from ratt_opt.missions.players.named import name_of
 from ratt_opt.studies.cases import Cell, Seeds
 from ratt_opt.studies.instance import ATTACKERS, METRICS, PLANNERS
 from ratt_opt.studies.quantities import QUANTITIES
 from ratt_opt.studies.versions import VERSIONS, hash_of_modules, hash_of_texts
+from ratt_opt.vocabulary import current_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Sequence
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.studies.cases import Case
 
-__all__ = ["Study", "name_of", "path_of", "run_trial"]
+__all__ = ["Study", "check_names", "path_of", "run_trial"]
 
 COMPARISON = "ratt_opt.studies.comparison:measure"
 """The measure of studies that name no other."""
@@ -75,6 +77,8 @@ class Study:
     fixed_trials: int | None = None
 
     def __post_init__(self) -> None:
+        for role in ("planner", "attacker"):
+            object.__setattr__(self, f"{role}s", _with_current_names(role, getattr(self, f"{role}s")))
         for kind in ("planners", "attackers"):
             names = list(_named(getattr(self, kind)))
             if len(names) < len(getattr(self, kind)):
@@ -85,18 +89,8 @@ class Study:
         for function in self._own():
             path_of(function)
         if self.measure == COMPARISON:
-            self._check_names()
-
-    def _check_names(self) -> None:
-        """Refuse names that the comparison of planners does not know, before a trial is run."""
-        known: dict[str, Collection[str]] = {"planners": PLANNERS, "attackers": ATTACKERS}
-        known |= {"metrics": METRICS, "quantities": QUANTITIES}
-        for kind, names in known.items():
-            given = getattr(self, kind)
-            for member in given.values() if isinstance(given, Mapping) else given:
-                if isinstance(member, str) and member not in names:
-                    own = " or functions" if kind in {"planners", "attackers"} else ""
-                    raise InputError(kind, f"must be among {', '.join(names)}{own}", member)
+            known: dict[str, Collection[str]] = {"planners": PLANNERS, "attackers": ATTACKERS}
+            check_names(self, known | {"metrics": METRICS, "quantities": QUANTITIES})
 
     @property
     def planner_names(self) -> tuple[str, ...]:
@@ -145,12 +139,14 @@ class Study:
         return hashlib.sha256(json.dumps(self.definition(), sort_keys=True).encode()).hexdigest()[:16]
 
 
-def name_of(member: str | Callable[..., Any]) -> str:
-    """Return what columns call a planner or attacker."""
-    if isinstance(member, partial):
-        given = [*map(repr, member.args), *(f"{name}={value!r}" for name, value in member.keywords.items())]
-        return f"{name_of(member.func)}({', '.join(given)})"
-    return member if isinstance(member, str) else str(getattr(member, "__name__", member))
+def check_names(study: Study, known: Mapping[str, Collection[str]]) -> None:
+    """Refuse names that are not ``known`` of a field, before a trial is run."""
+    for field, names in known.items():
+        given = getattr(study, field)
+        for member in given.values() if isinstance(given, Mapping) else given:
+            if isinstance(member, str) and member not in names:
+                own = " or functions" if field in {"planners", "attackers"} else ""
+                raise InputError(field, f"must be among {', '.join(names)}{own}", member)
 
 
 def path_of(function: Callable[..., Any]) -> str:
@@ -183,6 +179,13 @@ def _named(members: Sequence[str | Member] | Mapping[str, str | Member]) -> dict
     return dict(members) if isinstance(members, Mapping) else {name_of(member): member for member in members}
 
 
+def _with_current_names(role: str, members: Any) -> Any:
+    """The members, those by a former name by that of today."""
+    if isinstance(members, Mapping):
+        return {name: current_name(role, member, stacklevel=6) for name, member in members.items()}
+    return tuple(current_name(role, member, stacklevel=6) for member in members)
+
+
 def run_trial(study: Study, case: int, trial: int) -> dict[str, Cell]:
     """Measure one trial of one case: the unit of work, a pure function of its arguments."""
     chosen, seeds = study.cases[case], Seeds.of(study.seed, trial)
@@ -197,4 +200,14 @@ def run_trial(study: Study, case: int, trial: int) -> dict[str, Cell]:
         "graph": chosen.graph,
     }
     head: dict[str, Cell] = {"case": chosen.name, "trial": trial, "seed": seeds.scenario, "versions": VERSIONS}
-    return {**head, **factors, **dict(chosen.options), **measure(study, chosen, seeds)}
+    measured = measure(study, chosen, seeds)
+    _check_metrics(study, measured)
+    return {**head, **factors, **dict(chosen.options), **measured}
+
+
+def _check_metrics(study: Study, measured: Mapping[str, Cell]) -> None:
+    """Refuse a row without one of the study's metrics: else only its tables, after all trials, would miss it."""
+    found = {parts[2]: None for parts in (name.split("/", 2) for name in measured) if len(parts) > 2}
+    lacking = next((metric for metric in study.metrics if metric not in found), None)
+    if study.planner_names and study.attacker_names and lacking is not None:
+        raise InputError("metrics", f"must be among those measured ({', '.join(found) or 'none'})", lacking)

@@ -10,7 +10,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from ratt_opt import InputError, Stop, breaking_budgets, random_scenario, ratt, robots_to_protect, worst_case_attack
+from ratt_opt import (
+    InputError,
+    Stop,
+    breaking_budgets,
+    random_scenario,
+    ratt,
+    robots_to_protect,
+    solve_maxmin,
+    worst_case_attack,
+)
 
 
 @settings(max_examples=10)
@@ -65,3 +74,23 @@ def test_budgets_are_asked_in_metres() -> None:
         breaking_budgets(problem, plan)
     with pytest.raises(InputError, match="rms needs the trace"):
         breaking_budgets(scenario.problem("logdet"), plan, rms=1.0)
+
+
+def test_budgets_against_a_team_that_plans_anew() -> None:
+    """Each pair breaks the plan made against it, not the one made against a link fewer; best plans last longest."""
+    problem = random_scenario(5, 3, alpha_s=1, alpha_c=1, seed=4).problem()
+    fixed = ratt(problem)
+    goal = 0.6 * worst_case_attack(problem, fixed).lower
+
+    def value(alpha_s, alpha_c):
+        stronger = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
+        return worst_case_attack(stronger, ratt(stronger)).lower
+
+    found = breaking_budgets(problem, ratt, goal)
+    assert found
+    for one in found:
+        assert value(one.alpha_s, one.alpha_c) < goal
+        assert one.alpha_c == 0 or value(one.alpha_s, one.alpha_c - 1) >= goal
+    best = {one.alpha_s: one.alpha_c for one in breaking_budgets(problem, solve_maxmin, goal)}
+    for one in breaking_budgets(problem, fixed, goal):
+        assert all(links >= one.alpha_c for robots, links in best.items() if robots == one.alpha_s)

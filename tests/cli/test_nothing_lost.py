@@ -177,7 +177,7 @@ def test_an_interrupt_of_an_attack_ends_it_with_what_was_found(
     assert asked == list(COMMAND)[: list(COMMAND).index(interrupted) + 1]
     if is_caught or interrupted != "attack_survey":
         found = json.loads(printed.out)
-        assert found["attacks"]["exact"]["lower"] <= found["attacks"]["exact"]["upper"]
+        assert found["attacks"]["worst"]["lower"] <= found["attacks"]["worst"]["upper"]
     else:
         assert printed.out == ""
 

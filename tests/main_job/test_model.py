@@ -268,7 +268,7 @@ def test_planners_of_ones_own_stand_in_every_table_and_figure(tmp_path: Path) ->
     from ratt_opt.report.tables import report_tables
 
     report = ro.bound(team(), planners={"last": last, "first": first}, **QUICK)
-    assert [plan.name for plan in report.baselines][-2:] == ["last", "first"]
+    assert [plan.planner for plan in report.baselines][-2:] == ["last", "first"]
     problem = team().problem()
     for plan, planner in zip(report.baselines[-2:], (last, first), strict=True):
         worst = ro.worst_case_attack(problem, planner(problem))
@@ -315,7 +315,7 @@ def test_an_interrupted_planner_is_left_out_by_name() -> None:
     report = ro.bound(team(), planners={"last": last, "slow": hit, "first": first}, **QUICK)
     assert report.interrupted
     assert report.omitted["slow"] == report.omitted["first"] == "interrupted"
-    assert "last" in {plan.name for plan in report.baselines}
+    assert "last" in {plan.planner for plan in report.baselines}
 
 
 def test_attackers_of_ones_own_stand_in_the_survey() -> None:
@@ -325,7 +325,7 @@ def test_attackers_of_ones_own_stand_in_the_survey() -> None:
     assert found["first robot"].upper == pytest.approx(problem.team_value(plan, ro.Attack(frozenset({0}))))
     assert found["first robot"].lower == 0
     for attackers, text in (
-        ({"exact": lambda _p, _e: ro.Attack()}, "attackers must have names that are none of exact"),
+        ({"worst": lambda _p, _e: ro.Attack()}, "attackers must have names that are none of worst"),
         ({"x": lambda _p, _e: 3}, r"attackers\['x'\] must return an Attack"),
         ({"x": lambda _p, _e: ro.Attack(frozenset({0, 1, 2}))}, "at most"),
     ):

@@ -78,7 +78,7 @@ def test_attack_takes_a_whole_report(saved, tmp_path, capsys):
     assert run(["attack", str(tmp_path / "s.json"), "--plan", str(out / "report.json"), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["elements"] == report.recommended.elements.tolist()
-    assert found["attacks"]["exact"]["upper"] == pytest.approx(report.recommended.worst_case.upper, rel=1e-12)
+    assert found["attacks"]["worst"]["upper"] == pytest.approx(report.recommended.worst_case.upper, rel=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -108,7 +108,7 @@ def test_nothing_to_attack_has_no_next_worst():
 def test_notebooks_show_names_and_numbers(saved):
     report, _, _ = saved
     shown = report._repr_html_()
-    assert all(plan.name in shown for plan in report.plans)
+    assert all(plan.planner in shown for plan in report.plans)
     assert "<svg" in shown
     assert "http" not in shown.partition("<svg")[0]
     problem = report.problem

@@ -86,7 +86,7 @@ def test_bars_are_what_is_decided_and_whiskers_what_is_not(alpha_s, seconds):
     scenario = ro.random_scenario(10, 5, alpha_s=alpha_s, alpha_c=20 if seconds < 1 else 0, seed=2)
     report = ro.bound(scenario, time_limit=seconds)
     bars = plan_figure(report, picture_of(scenario, report)).axes[1]
-    assert [label.get_text() for label in bars.get_yticklabels()] == [plan.name for plan in report.plans]
+    assert [label.get_text() for label in bars.get_yticklabels()] == [plan.planner for plan in report.plans]
     missing = "shortfall" in bars.get_xlabel()
     assert missing == (0 < 0.5 * report.upper <= min(plan.worst_case.lower for plan in report.plans))
     undecided = 0

@@ -59,7 +59,7 @@ SEARCHES = {
     "exhaustive_optimum": ro.exhaustive_optimum,
     "worst_case_attack": lambda p: ro.worst_case_attack(p, np.arange(4) * 3),
     "links_to_protect": lambda p: ro.links_to_protect(p, np.arange(4) * 3, 2),
-    "attack_survey": lambda p: ro.attack_survey(p, np.arange(4) * 3)["exact"],
+    "attack_survey": lambda p: ro.attack_survey(p, np.arange(4) * 3)["worst"],
     "breaking_budgets": lambda p: ro.breaking_budgets(p, np.arange(4) * 3, 1.0),
     "nonrobust_optimum": ro.nonrobust_optimum,
     "total_curvature": lambda p: ro.total_curvature(p.objective, p.robot),

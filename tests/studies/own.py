@@ -47,7 +47,7 @@ STUDY = Study(
     name="own",
     cases=(Case(n_robots=4, n_targets=1, alpha_s=1, alpha_c=0),),
     planners=("ratt", boldest),
-    attackers=("exact", first_robot),
+    attackers=("worst", first_robot),
     metrics=("value", "proved"),
     quantities=("optimum",),
     problem=cover,

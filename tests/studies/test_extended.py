@@ -50,8 +50,8 @@ def test_no_plan_is_proved_better_than_the_upper_bound(out: Path) -> None:
     upper = column(rows, "optimum/upper")
     assert (column(rows, "optimum/lower") <= upper).all()
     for planner in ("ratt", "greedy", "myopic"):
-        assert (column(rows, f"{planner}/exact/proved") <= upper * (1 + 1e-12)).all()
-        assert (column(rows, f"{planner}/exact/proved") <= column(rows, f"{planner}/exact/value")).all()
+        assert (column(rows, f"{planner}/worst/proved") <= upper * (1 + 1e-12)).all()
+        assert (column(rows, f"{planner}/worst/proved") <= column(rows, f"{planner}/worst/value")).all()
 
 
 def test_fewer_links_never_help(out: Path) -> None:
@@ -76,9 +76,9 @@ def test_large_optima_are_reproducible_and_no_trace_is_below_their_bound() -> No
     row = run_trial(EXACT, 3, 0)
     assert row == run_trial(EXACT, 3, 0)
     bound = float(row["optimum/trace_bound"])
-    assert bound < float(row["optimum/exact/trace"]) < 1.02 * bound
+    assert bound < float(row["maxmin/worst/trace"]) < 1.02 * bound
     for planner in EXACT.planner_names:
-        trace, value = (float(row[f"{planner}/exact/{name}"]) for name in ("trace", "value"))
+        trace, value = (float(row[f"{planner}/worst/{name}"]) for name in ("trace", "value"))
         assert trace >= bound * (1 - 1e-12)
         # Trace and value are two readings of one number.
         assert trace - bound == pytest.approx((float(row["optimum/upper"]) - value) / 20)
@@ -103,10 +103,10 @@ def test_each_plan_is_attacked_once_and_exactly(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr("ratt_opt.studies.instance.worst_case_attack", counting)
     instance = Instance.of(EXACT.cases[0], Seeds.of(1, 0))
-    plans = [instance.plan(name) for name in ("optimum", "ratt", "greedy", "ratt")]
+    plans = [instance.plan(name) for name in ("maxmin", "ratt", "greedy", "ratt")]
     for plan in plans:
         found, fresh = instance.worst_case(plan), worst_case_attack(instance.problem, plan)
-        assert instance.strike("exact", plan) == (found.attack, found.lower)
+        assert instance.strike("worst", plan) == (found.attack, found.lower)
         assert (found.lower, found.upper) == pytest.approx((fresh.lower, fresh.upper), rel=1e-9)
     assert len(attacked) == len({tuple(plan) for plan in attacked}) <= 2  # the search has attacked its own plan
 

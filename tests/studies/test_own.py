@@ -25,8 +25,8 @@ def test_own_functions_are_columns_by_their_names_also_in_other_processes(tmp_pa
     for trial, row in enumerate(read_table(tmp_path)):
         assert row == {name: str(value) for name, value in run_trial(STUDY, 0, trial).items()}
         for planner in ("ratt", "boldest"):
-            assert float(row[f"{planner}/exact/value"]) <= float(row[f"{planner}/first_robot/value"])
-            assert float(row[f"{planner}/exact/value"]) <= float(row["optimum/upper"])
+            assert float(row[f"{planner}/worst/value"]) <= float(row[f"{planner}/first_robot/value"])
+            assert float(row[f"{planner}/worst/value"]) <= float(row["optimum/upper"])
 
 
 def test_a_measure_is_a_function_or_its_path():
@@ -62,7 +62,7 @@ def test_a_module_that_is_run_goes_by_its_own_name(monkeypatch, spec, found):
     [
         ({"planners": (lambda instance: instance,)}, "functions that stand at the top of a module"),
         ({"planners": (boldest, "boldest")}, "planners must have different names"),
-        ({"attackers": ("exact", "exact")}, "attackers must have different names"),
+        ({"attackers": ("worst", "worst")}, "attackers must have different names"),
     ],
 )
 def test_what_workers_could_not_find_is_refused(change, text):
@@ -78,6 +78,6 @@ def test_metrics_of_scenarios_are_refused_for_other_problems(metric):
 
 def test_a_study_of_random_scenarios_takes_own_planners():
     case = Case(n_robots=3, n_targets=2, alpha_s=1, alpha_c=1)
-    study = Study(name="s", cases=(case,), planners=(boldest, "myopic"), attackers=("exact",), metrics=("mse", "trace"))
+    study = Study(name="s", cases=(case,), planners=(boldest, "myopic"), attackers=("worst",), metrics=("mse", "trace"))
     row = run_trial(study, 0, 0)
-    assert row["boldest/exact/trace"] == row["myopic/exact/trace"]
+    assert row["boldest/worst/trace"] == row["myopic/worst/trace"]

@@ -23,9 +23,10 @@ from ratt_opt.missions.live.in_time import LATE, Asked, InTime, Planned
 from ratt_opt.missions.live.packets import PacketError, Skipped, TrackerPlan
 from ratt_opt.missions.live.roster import threat, with_attack, with_target, without_robot, without_target
 from ratt_opt.missions.live.state import Moment, TrackerState
-from ratt_opt.missions.planning import Now, offered_sequences, part_problem, planner_world
+from ratt_opt.missions.planning import offered_sequences, part_problem, planner_world
 from ratt_opt.missions.players.planners import planner_called
 from ratt_opt.missions.world import MissionModel, World
+from ratt_opt.scenario.planner_world import Now
 from ratt_opt.scenario.record import LARGEST
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 import numpy as np
 
@@ -111,7 +111,29 @@ class KnownVelocity(ByValue, TargetMotion):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstantVelocity(ByValue, TargetMotion):
+class _EstimatedVelocity(ByValue, TargetMotion):
+    """Targets whose velocity is part of the state, under white acceleration.
+
+    ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in a ``sampling_period`` [m].
+    ``velocity_std`` : standard deviation of the first estimate of the velocity [m/s].
+    """
+
+    process_std: FloatArray
+    sampling_period: float = 1.0
+    velocity_std: float = VELOCITY_STD
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> Self:
+        """The scenario's targets, what moves them now to be estimated."""
+        return cls(_process_std(scenario), scenario.sampling_period)
+
+    def _planar_noise(self, period: float) -> FloatArray:
+        """(M, 4, 4); its density is such that one sampling period moves a position by ``process_std``."""
+        return white_acceleration(3 * self.process_std**2 / self.sampling_period**3, period)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ConstantVelocity(_EstimatedVelocity):
     """States x, y [m], velocity [m/s]; white acceleration.
 
     ``process_std`` : (M,) standard deviation per axis by which that noise moves a target in a ``sampling_period`` [m].
@@ -120,15 +142,7 @@ class ConstantVelocity(ByValue, TargetMotion):
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 6.2.2.
     """
 
-    process_std: FloatArray
-    sampling_period: float = 1.0
-    velocity_std: float = VELOCITY_STD
     dimension: ClassVar[int] = 4
-
-    @classmethod
-    def of(cls, scenario: Scenario) -> ConstantVelocity:
-        """The scenario's targets, their velocity now to be estimated."""
-        return cls(_process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
         """(..., M, 4) states one period later."""
@@ -141,7 +155,7 @@ class ConstantVelocity(ByValue, TargetMotion):
 
     def noise(self, period: float) -> FloatArray:
         """(M, 4, 4) of white acceleration."""
-        return _white_acceleration(self.process_std, self.sampling_period, period)
+        return self._planar_noise(period)
 
     def initial(self, scenario: Scenario) -> Belief:
         """The scenario's estimates, with its speeds and headings as velocities."""
@@ -149,7 +163,7 @@ class ConstantVelocity(ByValue, TargetMotion):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CoordinatedTurn(ByValue, TargetMotion):
+class CoordinatedTurn(_EstimatedVelocity):
     """States x, y [m], velocity [m/s], turn rate [rad/s]; white acceleration and a drifting turn rate.
 
     ``process_std``, ``velocity_std`` : as for :class:`ConstantVelocity`; ``turn_std`` : standard deviation of the
@@ -158,17 +172,9 @@ class CoordinatedTurn(ByValue, TargetMotion):
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 11.7.
     """
 
-    process_std: FloatArray
-    sampling_period: float = 1.0
-    velocity_std: float = VELOCITY_STD
     turn_std: float = TURN_STD
     turn_noise: float = TURN_NOISE
     dimension: ClassVar[int] = 5
-
-    @classmethod
-    def of(cls, scenario: Scenario) -> CoordinatedTurn:
-        """The scenario's targets, their velocity and turn rate now to be estimated."""
-        return cls(_process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
         """(..., M, 5) states one period later."""
@@ -206,7 +212,7 @@ class CoordinatedTurn(ByValue, TargetMotion):
     def noise(self, period: float) -> FloatArray:
         """(M, 5, 5)."""
         noise = np.zeros((len(self.process_std), 5, 5))
-        noise[:, :4, :4] = _white_acceleration(self.process_std, self.sampling_period, period)
+        noise[:, :4, :4] = self._planar_noise(period)
         noise[:, 4, 4] = period * self.turn_noise**2
         return noise
 
@@ -221,21 +227,13 @@ class CoordinatedTurn(ByValue, TargetMotion):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ConstantVelocity3D(ByValue, TargetMotion):
+class ConstantVelocity3D(_EstimatedVelocity):
     """States x, y [m], velocity in x and y [m/s], height z [m], climb rate [m/s]; white acceleration on all axes.
 
     ``process_std``, ``velocity_std`` : as for :class:`ConstantVelocity`.
     """
 
-    process_std: FloatArray
-    sampling_period: float = 1.0
-    velocity_std: float = VELOCITY_STD
     dimension: ClassVar[int] = 6
-
-    @classmethod
-    def of(cls, scenario: Scenario) -> ConstantVelocity3D:
-        """The scenario's targets, their velocities now to be estimated."""
-        return cls(_process_std(scenario), scenario.sampling_period)
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002
         """(..., M, 6) states one period later."""
@@ -248,7 +246,7 @@ class ConstantVelocity3D(ByValue, TargetMotion):
     def noise(self, period: float) -> FloatArray:
         """(M, 6, 6) of white acceleration."""
         noise = np.zeros((len(self.process_std), 6, 6))
-        noise[:, :4, :4] = planar = _white_acceleration(self.process_std, self.sampling_period, period)
+        noise[:, :4, :4] = planar = self._planar_noise(period)
         noise[:, 4:, 4:] = planar[:, ::2, ::2]
         return noise
 
@@ -319,11 +317,6 @@ def _cells(time: float, period: float, cell: float) -> tuple[FloatArray, FloatAr
 def _process_std(scenario: Scenario) -> FloatArray:
     """(M,) by how much white acceleration moves a target's position in a sampling period [m]."""
     return readonly(np.sqrt(scenario.acceleration_density * scenario.sampling_period**3 / 3))
-
-
-def _white_acceleration(process_std: FloatArray, sampling_period: float, period: float) -> FloatArray:
-    """(M, 4, 4); its density is such that one sampling period moves a position by ``process_std``."""
-    return white_acceleration(3 * process_std**2 / sampling_period**3, period)
 
 
 def _positions(scenario: Scenario) -> Belief:

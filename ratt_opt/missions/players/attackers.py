@@ -37,7 +37,7 @@ def _worst(problem: Problem, plan: IntArray) -> AttackResult:
 ATTACKERS: dict[str, Attacker] = {
     "none": lambda _problem, _plan, _seed: Attack(),
     "worst": lambda problem, plan, _seed: _worst(problem, plan),
-    "bounded rational": lambda problem, plan, _seed: bounded_rational_attack(problem, plan),
+    "bounded_rational": lambda problem, plan, _seed: bounded_rational_attack(problem, plan),
     "greedy": lambda problem, plan, _seed: greedy_attack(problem, plan),
     "random": lambda problem, plan, seed: random_attack(problem, plan, seed=seed),
 }

@@ -102,7 +102,7 @@ PLANNERS: dict[str, Planner] = {
     "refined": RefinedPlanner(),
     "greedy": greedy,
     "myopic": myopic,
-    "nonrobust": nonrobust_optimum,
+    "nonrobust_optimum": nonrobust_optimum,
     "random": RandomPlanner(),
 }
 

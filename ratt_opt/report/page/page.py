@@ -42,7 +42,7 @@ def report_page(report: Findings) -> str:
     colours = {"seeing": SURVIVING, "lost": LOST, "blinded": BLINDED, "target": TARGET, "ink": INK}
     palette = ":root{" + "".join(f"--{name}:{colour};" for name, colour in colours.items()) + "}"
     plan = report.recommended
-    title = f"{report.problem.n_robots} robots: the {plan.name} plan under attack"
+    title = f"{report.problem.n_robots} robots: the {plan.planner} plan under attack"
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
@@ -116,21 +116,21 @@ def _planner_section(report: Findings) -> Iterator[str]:
     yield '<section aria-labelledby="planners"><h2 id="planners">Planners under their worst attacks</h2>'
     yield '<div class="wide"><table>'
     unit = escape(f" [{report.unit}]" if report.unit else "")
-    looks = looks_of([plan.name for plan in report.plans])
+    looks = looks_of([plan.planner for plan in report.plans])
     yield f'<thead><tr><th scope="col">planner</th><th scope="col">worst-case value{unit}</th>'
     yield '<th scope="col">share of the best possible</th>'
     yield f'<th scope="col">{what} (grey: not decided)</th></tr></thead><tbody>'
     for plan, bracket in zip(report.plans, brackets, strict=True):
         low, high = plan.worst_case.lower, plan.worst_case.upper
         ends = [100 * min(max(x / longest, 0.0), 1.0) for x in bracket]
-        mark = " (recommended)" if plan.name == report.recommended.name else ""
+        mark = " (recommended)" if plan.planner == report.recommended.planner else ""
         bar = (
             f'<svg class="bar" viewBox="0 0 100 8" preserveAspectRatio="none" aria-hidden="true">'
             f'<rect width="100" height="8" class="room"/><rect width="{ends[1]:.3f}" height="8" class="open"/>'
-            f'<rect width="{ends[0]:.3f}" height="8" fill="{looks[plan.name].colour}"/></svg>'
+            f'<rect width="{ends[0]:.3f}" height="8" fill="{looks[plan.planner].colour}"/></svg>'
         )
         yield (
-            f'<tr><th scope="row">{escape(plan.name + mark)}</th>'
+            f'<tr><th scope="row">{escape(plan.planner + mark)}</th>'
             f'<td data-column="worst-case value{unit}" data-lower="{low!r}" data-upper="{high!r}">'
             f'{bracket_text(low, high)}</td><td data-column="share of the best possible">'
             f"{escape(share_text(low, report.upper))}</td><td>{bar}</td></tr>"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import math
 
 import numpy as np
 import pytest
@@ -12,6 +11,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt import Measurement, MissionModel, PositionSensor, Robot, Scenario, Target, Tracker
 from ratt_opt.cli import run
+from tests.missions.bags.writer import HEADING, PERIOD, START, write
 
 rosbags = pytest.importorskip("rosbags")
 pytest.importorskip("mcap")
@@ -33,111 +33,18 @@ MAPPING = {
     "detections": {"/ada/objects": {"robot": 0, "frame": "robot"}, "/bob/objects": {"robot": 1}},
     "targets": {"7": 0},
 }
-START = 1000.0
-HEADING = 0.5
 
 
 def heard(rng):
     """Detections (time, topic, object, place in the map): object 7 moves, 8 appears later, one of 7 is a wild one."""
     rows = []
     for k in range(15):
-        time = START + 0.2 * k + 0.05
+        time = START + PERIOD * k + 0.05
         place = np.array([10.0 + 0.2 * k, 20.0]) + rng.normal(size=2) * 0.5
         rows.append((time, "/ada/objects", "7", place + np.array([300.0, 0.0]) if k == 9 else place))
         if k >= 5:
             rows.append((time, "/bob/objects", "8", np.array([25.0, 5.0]) + rng.normal(size=2) * 0.5))
     return rows
-
-
-def write(path, kind, rows):
-    """A bag of one kind: ``ros1``, ``sqlite3`` or ``mcap``."""
-    from rosbags.rosbag1 import Writer as Writer1
-    from rosbags.rosbag2 import StoragePlugin
-    from rosbags.rosbag2 import Writer as Writer2
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
-    from ratt_opt.missions.bags.reading import DEFINITIONS
-
-    old = kind == "ros1"
-    store = get_typestore(Stores.ROS1_NOETIC if old else Stores.ROS2_HUMBLE)
-    for name, text in DEFINITIONS.items():
-        store.register(get_types_from_msg(text, name))
-    types = store.types
-    Stamp, Header = types["builtin_interfaces/msg/Time"], types["std_msgs/msg/Header"]
-    Point, Quaternion = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
-    Pose, Spread = types["geometry_msgs/msg/Pose"], types["geometry_msgs/msg/PoseWithCovariance"]
-    Vector, Twist = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Twist"]
-    TwistSpread, Acc = types["geometry_msgs/msg/TwistWithCovariance"], types["geometry_msgs/msg/Accel"]
-
-    def header(time):
-        stamp = Stamp(sec=int(time), nanosec=round((time - int(time)) * 1e9))
-        return Header(seq=0, stamp=stamp, frame_id="map") if old else Header(stamp=stamp, frame_id="map")
-
-    def pose(x, y, heading=0.0, variance=0.0):
-        turn = Quaternion(x=0.0, y=0.0, z=math.sin(heading / 2), w=math.cos(heading / 2))
-        place = Pose(position=Point(x=x, y=y, z=0.0), orientation=turn)
-        return Spread(pose=place, covariance=np.eye(6).ravel() * variance)
-
-    still = Vector(x=0.0, y=0.0, z=0.0)
-    twist = TwistSpread(twist=Twist(linear=still, angular=still), covariance=np.zeros(36))
-
-    def odometry(time):
-        kind = types["nav_msgs/msg/Odometry"]
-        return kind(header=header(time), child_frame_id="ada", pose=pose(0.0, 0.0, HEADING, 0.01), twist=twist)
-
-    def stamped(time):
-        return types["geometry_msgs/msg/PoseStamped"](header=header(time), pose=pose(30.0, 0.0).pose)
-
-    def vision(time, name, place):
-        one = types["vision_msgs/msg/ObjectHypothesisWithPose"](
-            hypothesis=types["vision_msgs/msg/ObjectHypothesis"](class_id="boat", score=0.9),
-            pose=pose(*place, 0.0, 0.25),
-        )
-        box = types["vision_msgs/msg/BoundingBox3D"](center=one.pose.pose, size=still)
-        found = types["vision_msgs/msg/Detection3D"](header=header(time), results=[one], bbox=box, id=name)
-        return types["vision_msgs/msg/Detection3DArray"](header=header(time), detections=[found])
-
-    def derived(time, name, place):
-        acc = types["geometry_msgs/msg/AccelWithCovariance"](
-            accel=Acc(linear=still, angular=still), covariance=np.zeros(36)
-        )
-        solid = types["shape_msgs/msg/SolidPrimitive"]
-        fields = {"polygon": types["geometry_msgs/msg/Polygon"](points=[])} if not old else {"polygon": None}
-        shape = solid(type=1, dimensions=np.zeros(3), **({} if old else fields))
-        one = types["derived_object_msgs/msg/ObjectWithCovariance"](
-            header=header(time),
-            id=int(name),
-            detection_level=0,
-            object_classified=False,
-            pose=pose(*place, 0.0, 0.25),
-            twist=twist,
-            accel=acc,
-            polygon=types["geometry_msgs/msg/Polygon"](points=[]),
-            shape=shape,
-            classification=0,
-            classification_certainty=0,
-            classification_age=0,
-        )
-        return types["derived_object_msgs/msg/ObjectWithCovarianceArray"](header=header(time), objects=[one])
-
-    cosine, sine = math.cos(HEADING), math.sin(HEADING)
-    events = [(START + 0.2 * k, "/ada/odom", "nav_msgs/msg/Odometry", odometry(START + 0.2 * k)) for k in range(16)]
-    events += [(t, "/bob/pose", "geometry_msgs/msg/PoseStamped", stamped(t)) for t, *_ in events]
-    for time, topic, name, (x, y) in rows:
-        if topic == "/ada/objects":
-            body = (cosine * x + sine * y, -sine * x + cosine * y)
-            events.append((time, topic, "vision_msgs/msg/Detection3DArray", vision(time, name, body)))
-        else:
-            kind2 = "derived_object_msgs/msg/ObjectWithCovarianceArray"
-            events.append((time, topic, kind2, derived(time, name, (x, y))))
-    plugin = StoragePlugin.MCAP if kind == "mcap" else StoragePlugin.SQLITE3
-    with Writer1(path) if old else Writer2(path, version=9, storage_plugin=plugin) as writer:
-        known = {}
-        for time, topic, name, message in sorted(events, key=lambda event: event[0]):
-            if topic not in known:
-                known[topic] = writer.add_connection(topic, name, typestore=store)
-            raw = store.serialize_ros1(message, name) if old else store.serialize_cdr(message, name)
-            writer.write(known[topic], round(time * 1e9), raw)
 
 
 @pytest.mark.parametrize("kind", ["sqlite3", "mcap", "ros1"])
@@ -160,7 +67,7 @@ def test_a_bag_in_and_plans_out(kind: str, tmp_path, capsys) -> None:
     unsure[0] = np.eye(3) * 0.01
     tracks = list(csv.DictReader((out / "tracks.csv").read_text(encoding="utf-8").splitlines()))
     for k in range(16):
-        now, made = START + 0.2 * k, []
+        now, made = START + PERIOD * k, []
         while waiting and waiting[0][0] <= now:
             time, topic, name, place = waiting.pop(0)
             if name not in known:
