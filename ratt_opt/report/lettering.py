@@ -33,7 +33,7 @@ class Lettering:
     """
 
     longest: int = 32
-    line: int = 16
+    line: int = 18
 
 
 ROOM = Lettering()
