@@ -75,7 +75,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     """One figure per scenario of the paper: the first trial in which the worst attack leaves the planners unequal."""
     for case, name in zip(STUDY.cases, FIGURES, strict=True):
         kept = select(rows, case=case.name)
-        shown = next((row for row in kept if row["ratt/worst/value"] != row["nonrobust_maxmin/worst/value"]), kept[0])
+        shown = next((row for row in kept if row["ratt/worst/value"] != row["nonrobust_optimum/worst/value"]), kept[0])
         cells = [(planner, attacker) for attacker in STUDY.attacker_names for planner in STUDY.planner_names]
         pictures = [json.loads(shown[f"{planner}/{attacker}/picture"]) for planner, attacker in cells]
         window = common_limits(pictures)
