@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attack.team import Links, Team, has_native_kernel
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address, address_of
+from ratt_opt.native.loops import AnnealRecord, loops
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -56,20 +56,6 @@ class Partition:
         return Attack(frozenset(np.flatnonzero(self.blind).tolist()), cut)
 
 
-class AnnealRecord(Structure):
-    """``Anneal`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_void_p) for name in ("table", "team")),
-        *((name, c_int64) for name in ("robots", "budget")),
-        *((name, c_void_p) for name in ("start", "robot", "fixed", "seeing")),
-        *((name, c_void_p) for name in ("group", "best_group", "blind", "best_blind")),
-        *((name, c_int64) for name in ("first", "last", "steps")),
-        *((name, c_double) for name in ("hot", "cold")),
-        *((name, c_void_p) for name in ("least", "random")),
-    ]
-
-
 class Starts:
     """Annealed attacks, one start after the other; deterministic for a seed.
 
@@ -82,7 +68,7 @@ class Starts:
     ) -> None:
         self._source, self._links, self._threat, self._moves = source, links, threat, moves
         self._rng = np.random.default_rng(seed)
-        self._random = c_uint64(int(self._rng.integers(1, 2**63)))
+        self._random = self._rng.integers(1, 2**63, 1, np.uint64)
         self._count = 0
         if isinstance(source, Team):
             self._table, self._scale, self._work = None, source.whole_value, max(source.work // 8, 1)
@@ -123,41 +109,39 @@ class Starts:
         return self._anneal(group, blind, WARM, self._moves, budget)
 
     def _anneal(self, group: IntArray, blind: BoolArray, hot: float, moves: int, budget: Budget) -> Partition | None:
-        steps, least, partition = moves * len(group), c_double(np.inf), None
-        arrays = (group, group.copy(), blind, blind.copy())
-        part = max(PART // self._work, 1)
-        for first in range(0, steps, part):
+        best, best_blind, least, partition = group.copy(), blind.copy(), np.full(1, np.inf), None
+        links, steps, part = self._links, moves * len(group), max(PART // self._work, 1)
+        record = AnnealRecord(
+            table=None if self._table is None else address(self._table),
+            team=address_of(self._source.record) if isinstance(self._source, Team) else None,
+            robots=len(group),
+            budget=self._threat.alpha_c,
+            start=address(links.start),
+            robot=address(links.robot),
+            fixed=address(links.fixed),
+            seeing=address(links.seeing),
+            group=address(group),
+            best_group=address(best),
+            blind=address(blind),
+            best_blind=address(best_blind),
+            first=0,
+            last=0,
+            steps=steps,
+            hot=hot * self._scale,
+            cold=COLD * self._scale,
+            least=address(least),
+            random=address(self._random),
+        )
+        for record.first in range(0, steps, part):
             budget.check()
-            before = least.value
-            self._go_on(arrays, (first, min(first + part, steps), steps), hot, least)
-            if least.value < before:
-                partition = Partition(group=arrays[1].copy(), blind=arrays[3].copy(), value=least.value)
+            before, record.last = float(least[0]), min(record.first + part, steps)
+            if loops.anneal(record):
+                raise MemoryError
+            if least[0] < before:
+                partition = Partition(group=best.copy(), blind=best_blind.copy(), value=float(least[0]))
                 if self.best is None or partition.value < self.best.value:
                     self.best = partition
         return partition
-
-    def _go_on(
-        self, arrays: tuple[IntArray | BoolArray, ...], part: tuple[int, int, int], hot: float, least: c_double
-    ) -> None:
-        """Anneal a part of the steps (first, last, all); ``arrays`` : group, the best, blind, the best."""
-        links, scale = self._links, self._scale
-        team = None if not isinstance(self._source, Team) else cast(byref(self._source.record), c_void_p)
-        graph = (address(one) for one in (links.start, links.robot, links.fixed, links.seeing))
-        record = AnnealRecord(
-            None if self._table is None else address(self._table),
-            team,
-            len(arrays[0]),
-            self._threat.alpha_c,
-            *graph,
-            *map(address, arrays),
-            *part,
-            hot * scale,
-            COLD * scale,
-            cast(byref(least), c_void_p),
-            cast(byref(self._random), c_void_p),
-        )
-        if function("anneal", c_int, POINTER(AnnealRecord))(byref(record)):
-            raise MemoryError
 
 
 class AnnealedAttacks:

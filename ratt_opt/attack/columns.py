@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_int, c_int64, c_uint64, c_void_p
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.graph.communication import mask_of
 from ratt_opt.graph.group_list import NARROW
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import ColumnsRecord, DualsRecord, loops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -21,19 +21,13 @@ if TYPE_CHECKING:
     from ratt_opt.attack.sets_below import SetsBelow
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["UNIT", "Column", "Columns", "ColumnsRecord", "DualsRecord", "IntegerDuals"]
+__all__ = ["UNIT", "Column", "Columns", "IntegerDuals"]
 
 
 UNIT = 1 << 20
 """Unit of integer duals: one link. Reduced costs are exact with them."""
 PART = 12
 """Robots of a table of sums of duals."""
-
-
-class DualsRecord(Structure):
-    """``IntegerDuals`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [("sums", c_void_p), ("unit", c_int64), ("blinding", c_int64)]
 
 
 class IntegerDuals:
@@ -55,7 +49,7 @@ class IntegerDuals:
     @property
     def record(self) -> DualsRecord:
         """Record that the C code reads."""
-        return DualsRecord(address(self._sums), UNIT, self.blinding)
+        return DualsRecord(sums=address(self._sums), unit=UNIT, blinding=self.blinding)
 
     def claim(self, n_blinded: int) -> int:
         """Return the dual bound: the least cost of a cover of the team, if no column has a negative reduced cost."""
@@ -67,15 +61,6 @@ def _sums_of_sets(values: IntArray) -> IntArray:
     for i, value in enumerate(values):
         sums[1 << i : 2 << i] = sums[: 1 << i] + value
     return sums
-
-
-class ColumnsRecord(Structure):
-    """``Columns`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("count", "wide")),
-        *((name, c_void_p) for name in ("groups", "cuts", "blinded")),
-    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,19 +80,22 @@ class Columns:
 
     def __init__(self, robots: int, groups: NDArray[Any], cuts: NDArray[np.uint8], blinded: NDArray[np.uint8]) -> None:
         self.robots, self.groups, self.cuts, self.blinded = robots, groups, cuts, blinded
-        kind = np.uint32 if robots <= NARROW else np.int64
-        arrays = [checked("groups", groups, kind, (len(groups),))]
-        arrays += [checked(name, getattr(self, name), np.uint8, (len(groups),)) for name in ("cuts", "blinded")]
-        self._record = ColumnsRecord(len(groups), robots > NARROW, *map(address, arrays))
+        kind, shape = np.uint32 if robots <= NARROW else np.int64, (len(groups),)
+        self._record = ColumnsRecord(
+            count=len(groups),
+            wide=robots > NARROW,
+            groups=address(checked("groups", groups, kind, shape)),
+            cuts=address(checked("cuts", cuts, np.uint8, shape)),
+            blinded=address(checked("blinded", blinded, np.uint8, shape)),
+        )
 
     @classmethod
     def of(cls, groups: NDArray[np.uint32], cuts: NDArray[np.uint8], below: SetsBelow, n_blinded: int) -> Columns:
         """The groups in which blinding at most ``n_blinded`` robots leaves less than the threshold."""
-        call = function("keep_reachable", c_int64, c_void_p, c_int64, *[c_void_p] * 2, c_int, *[c_void_p] * 3)
-        kept = np.empty_like(groups), np.empty_like(cuts), np.empty_like(cuts)
-        given = address(groups), address(cuts)
-        count = call(address(below.sizes), len(groups), *given, n_blinded, *map(address, kept))
-        return cls(below.robots, kept[0][:count], kept[1][:count], kept[2][:count])
+        kept, kept_cuts, blinded = np.empty_like(groups), np.empty_like(cuts), np.empty_like(cuts)
+        given = address(below.sizes), len(groups), address(groups), address(cuts), n_blinded
+        count = loops.keep_reachable(*given, address(kept), address(kept_cuts), address(blinded))
+        return cls(below.robots, kept[:count], kept_cuts[:count], blinded[:count])
 
     def __len__(self) -> int:
         return len(self.groups)
@@ -119,18 +107,15 @@ class Columns:
 
     def cheapest(self, duals: IntegerDuals) -> tuple[int, IntArray]:
         """The least reduced cost, and the columns, of one robot each, that have the least and a negative one."""
-        call = function("price", c_int64, c_int, POINTER(ColumnsRecord), POINTER(DualsRecord), c_void_p)
         cheapest = np.empty(self.robots, np.int64)
-        least = call(self.robots, byref(self._record), byref(duals.record), address(cheapest))
-        return (int(least) if len(self) else 0), np.unique(cheapest[cheapest >= 0])
+        least = loops.price(self.robots, self._record, duals.record, address(cheapest))
+        return (least if len(self) else 0), np.unique(cheapest[cheapest >= 0])
 
     def within(self, duals: IntegerDuals, gap: int, most: int) -> tuple[Columns, IntArray] | None:
         """The columns of reduced cost at most ``gap``, by reduced cost, and these; ``None`` : more than ``most``."""
-        given = POINTER(ColumnsRecord), POINTER(DualsRecord), *[c_int64] * 2, *[c_void_p] * 2
         room = min(most, len(self))
         columns, costs = np.empty(room, np.int64), np.empty(room, np.int64)
-        places = address(columns), address(costs)
-        count = function("within_gap", c_int64, *given)(byref(self._record), byref(duals.record), gap, room, *places)
+        count = loops.within_gap(self._record, duals.record, gap, room, address(columns), address(costs))
         if count > room:
             return None
         order = np.argsort(costs[:count], kind="stable")
@@ -150,7 +135,6 @@ class Columns:
 
         Drops groups with too many robots to blind, in place.
         """
-        call = function("restrict_columns", c_int64, POINTER(ColumnsRecord), c_uint64, c_int, c_uint64, c_int)
         protected = mask_of(threat.protected_robots)
-        count = call(byref(self._record), robots, most, protected, threat.n_blinded)
+        count = loops.restrict_columns(self._record, robots, most, protected, threat.n_blinded)
         self.groups, self.cuts, self.blinded = self.groups[:count], self.cuts[:count], self.blinded[:count]

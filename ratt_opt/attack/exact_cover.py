@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import CoverRecord, LevelRecord, loops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,27 +17,10 @@ if TYPE_CHECKING:
 
 __all__ = ["ExactCover", "packed"]
 
-LEVEL = np.dtype(
-    [
-        ("room", np.int64, 3),
-        *((name, np.int64) for name in ("start", "end", "position")),
-        *((name, np.int32) for name in ("robot", "column")),
-    ]
-)
 STEPS = 2_000_000
 """Columns looked at between two looks at the clock: some milliseconds."""
 FOUND, NONE, PAUSED = 1, 0, -1
 WORD = 64
-
-
-class CoverRecord(Structure):
-    """``Cover`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("robots", "words", "room")),
-        *((name, c_void_p) for name in ("groups", "costs", "fitting", "levels", "left", "counts")),
-        *((name, c_int64) for name in ("depth", "nodes", "most_nodes")),
-    ]
 
 
 def packed(groups: BoolArray) -> NDArray[np.uint64]:
@@ -57,17 +40,27 @@ class ExactCover:
 
     def __init__(self, robots: int, groups: NDArray[np.uint64], costs: IntArray, most: tuple[int, int, int]) -> None:
         count, words = len(groups), -(-robots // WORD)
-        self._levels, self._left = np.zeros(robots + 2, LEVEL), np.zeros((robots + 2, words), np.uint64)
+        self._levels, self._left = np.zeros(robots + 2, LevelRecord), np.zeros((robots + 2, words), np.uint64)
         self._levels[0] = most, 0, count, 0, -1, -1
         self._left[0] = packed(np.ones((1, robots), dtype=np.bool_))
         fitting = np.empty((robots + 1) * count, np.int32)  # at most all at each level; mostly never touched
         fitting[:count] = np.arange(count, dtype=np.int32)
-        self._arrays = (  # the record has their addresses only
-            checked("groups", np.ascontiguousarray(groups), np.uint64, (count, words)),
-            checked("costs", np.ascontiguousarray(costs), np.int64, (count, 3)),
-            *(fitting, self._levels, self._left, np.zeros(robots, np.int64)),
+        groups, costs, counts = np.ascontiguousarray(groups), np.ascontiguousarray(costs), np.zeros(robots, np.int64)
+        self._arrays = groups, costs, fitting, counts  # the record has their addresses only
+        self._record = CoverRecord(
+            robots=robots,
+            words=words,
+            room=len(fitting),
+            groups=address(checked("groups", groups, np.uint64, (count, words))),
+            costs=address(checked("costs", costs, np.int64, (count, 3))),
+            fitting=address(fitting),
+            levels=address(self._levels),
+            left=address(self._left),
+            counts=address(counts),
+            depth=0,
+            nodes=0,
+            most_nodes=0,
         )
-        self._record = CoverRecord(robots, words, len(fitting), *map(address, self._arrays), 0, 0, 0)
 
     def found(self, budget: Budget) -> list[int]:
         """Places of the columns of the next cover, none if there is none; raises ``OutOfBudget`` as :meth:`next`."""
@@ -83,12 +76,11 @@ class ExactCover:
         ------
         OutOfBudget : nodes or seconds are spent, or the user interrupted; the search goes on where it was.
         """
-        call, record = function("next_cover", c_int, POINTER(CoverRecord), c_int64), self._record
-        answer, left = PAUSED, steps
+        record, answer, left = self._record, PAUSED, steps
         while answer == PAUSED and left > 0:
             before = record.nodes
             record.most_nodes = before + budget.nodes_left(STEPS)
-            answer = call(byref(record), min(STEPS, left))
+            answer = loops.next_cover(record, min(STEPS, left))
             left -= STEPS
             budget.nodes += record.nodes - before
         if answer == FOUND:

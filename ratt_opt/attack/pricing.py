@@ -9,19 +9,21 @@ links that one group may cut.
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_uint64, c_void_p, cast
+from ctypes import byref, c_int64
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from time import monotonic
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.team import KEPT_LINKS, Links, Team, TeamRecord
-from ratt_opt.native.library import address, function
+from ratt_opt.attack.team import KEPT_LINKS, Links, Team
+from ratt_opt.native.library import address, address_of
+from ratt_opt.native.loops import PricingRecord, loops
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from ctypes import c_uint64
 
     from numpy.typing import NDArray
 
@@ -45,19 +47,6 @@ BLINDED = 2
 """State of a robot towards a group; 1 is sensing, 0 outside."""
 
 
-class QuestionRecord(Structure):
-    """``Pricing`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        ("team", c_void_p),
-        *((name, c_double) for name in ("threshold", "level")),
-        *((name, c_int64) for name in ("n_blinded", "most_cut", "most")),
-        *((name, c_void_p) for name in ("start", "robot", "back", "fixed", "seeing", "least_cut", "duals", "order")),
-        *((name, c_int64) for name in ("blinding", "unit", "limit", "effort")),
-        *((name, c_void_p) for name in ("levels", "near", "filled")),
-    ]
-
-
 class PricingProblem:
     """Robots of one plan on one network; all questions share the levels computed for them."""
 
@@ -73,7 +62,7 @@ class PricingProblem:
         return None if team is None else cls(team, Links.of(threat), threat)
 
     @cached_property
-    def tables(self) -> tuple[FloatArray, IntArray, IntArray] | None:
+    def tables(self) -> tuple[FloatArray, NDArray[np.int32], NDArray[np.uint8]] | None:
         """Levels of copies of two robots, the other robots by these, and which sizes are filled."""
         robots = self.robots
         if robots > MOST_PAIRED:
@@ -86,10 +75,9 @@ class PricingProblem:
 
         ``effort`` : robots valued at most for each size
         """
-        call = function("most_below", c_int64, c_void_p, c_void_p)
         inside = np.ones(self.robots, dtype=np.bool_) if group is None else np.ascontiguousarray(group)
         with self._asked(threshold, effort) as search:
-            return int(call(search.handle, address(inside)))
+            return loops.most_below(search.handle, address(inside))
 
     def _asked(self, threshold: float, effort: int | None = None) -> GroupSearch:
         nothing = np.zeros(self.robots, dtype=np.int64)
@@ -101,50 +89,38 @@ class PricingProblem:
     ) -> Iterator[PricedGroup]:
         """A group around each robot, annealed between two temperatures [links that leave a group]."""
         best, record = np.zeros(self.robots, dtype=np.int8), self.record(question, question.duals)
-        call = function(
-            "anneal_column",
-            c_int64,
-            POINTER(QuestionRecord),
-            *[c_int64] * 2,
-            *[c_double] * 2,
-            POINTER(c_uint64),
-            c_void_p,
-        )
         hot, cold = warm[0] * UNIT, warm[1] * UNIT
         for first in range(self.robots):
             best[:] = 0
-            cost = call(byref(record), first, moves, hot, cold, byref(random), address(best))
+            cost = loops.anneal_column(record, first, moves, hot, cold, byref(random), address(best))
             need = int((best == BLINDED).sum())
-            yield PricedGroup(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=int(cost))
+            yield PricedGroup(robots=best > 0, blinded=best == BLINDED, need=need, found=need, cost=cost)
 
-    def record(self, question: Question, robots: IntArray) -> QuestionRecord:
+    def record(self, question: Question, robots: IntArray) -> PricingRecord:
         """Record that the C code reads; all arrays that it has the addresses of must be kept alive."""
-        team, links, tables = cast(byref(self.team.record), c_void_p), self.links, self.tables
-        arrays = (
-            links.start,
-            links.robot,
-            links.back,
-            links.fixed,
-            links.seeing,
-            self.least_cuts,
-            question.duals,
-            robots,
-        )
-        return QuestionRecord(
-            team,
-            question.threshold,
-            function("level_of_threshold", c_double, POINTER(TeamRecord), c_double)(
-                self.team.record, question.threshold
-            ),
-            self.threat.n_blinded,
-            self.threat.alpha_c,
-            question.most,
-            *map(address, arrays),
-            question.blinding,
-            question.unit,
-            question.limit,
-            question.effort or min(EFFORT, EFFORT_WORK // self.team.work + 1),
-            *([None] * 3 if tables is None else map(address, tables)),
+        links, tables = self.links, self.tables
+        return PricingRecord(
+            team=address_of(self.team.record),
+            threshold=question.threshold,
+            level=loops.level_of_threshold(self.team.record, question.threshold),
+            n_blinded=self.threat.n_blinded,
+            most_cut=self.threat.alpha_c,
+            most=question.most,
+            start=address(links.start),
+            robot=address(links.robot),
+            back=address(links.back),
+            fixed=address(links.fixed),
+            seeing=address(links.seeing),
+            least_cut=address(self.least_cuts),
+            duals=address(question.duals),
+            order=address(robots),
+            blinding=question.blinding,
+            unit=question.unit,
+            limit=question.limit,
+            effort=question.effort or min(EFFORT, EFFORT_WORK // self.team.work + 1),
+            levels=tables and address(tables[0]),
+            near=tables and address(tables[1]),
+            filled=tables and address(tables[2]),
         )
 
 
@@ -217,7 +193,7 @@ class GroupSearch:
             first = np.argsort(-question.duals, kind="stable").astype(np.int64)
         self._plan, self._kept = plan, (question.duals, first)  # the record has their addresses only
         self._record = plan.record(question, first)
-        self.handle = function("open_pricing", c_void_p, POINTER(QuestionRecord))(byref(self._record))
+        self.handle = loops.open_pricing(self._record)
         if not self.handle:
             raise MemoryError
         self.nodes = 0
@@ -231,7 +207,7 @@ class GroupSearch:
     def close(self) -> None:
         """Free what the search holds."""
         if self.handle:
-            function("close_pricing", None, c_void_p)(self.handle)
+            loops.close_pricing(self.handle)
             self.handle = None
 
     def __del__(self) -> None:
@@ -266,9 +242,8 @@ class GroupSearch:
         ``table`` : (C, N) what robots are to each group; (C, 4) its need, robots found, links, reduced cost
         """
         rows, progress = c_int64(count), c_int64(0)
-        call = function("list_groups_below", c_int, c_void_p, *[c_int64] * 2, *[c_void_p] * 4)
-        arrays = address(table[0]), address(table[1])
-        code = call(self.handle, nodes, len(table[0]), *arrays, byref(rows), byref(progress))
+        places = address(table[0]), address(table[1]), byref(rows), byref(progress)
+        code = loops.list_groups_below(self.handle, nodes, len(table[0]), *places)
         self.nodes = progress.value
         return rows.value, code == FINISHED
 

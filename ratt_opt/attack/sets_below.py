@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_double, c_int, c_int64, c_void_p
+from ctypes import byref, c_double, c_int64
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.team import MOST_ROBOTS, Team, TeamRecord
+from ratt_opt.attack.team import MOST_ROBOTS, Team
 from ratt_opt.errors import InputError
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -64,40 +65,28 @@ class SetsBelow:
         OutOfBudget : the time is up, or the user interrupted; ``sizes`` is then of no threshold.
         """
         following = self._mark_sets(float(threshold), budget)
-        let_spread = function("spread", None, c_void_p, c_int64, c_int)
         for robot in range(self.robots):
             budget.check()
             if robot not in self._protected:
-                let_spread(address(self.sizes), len(self.sizes), robot)
+                loops.spread(address(self.sizes), len(self.sizes), robot)
         return following
 
     def _mark_sets(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
         value, following = c_double(inf), c_int64(-1)
         kept = address(self.sizes), byref(value), byref(following)
         if isinstance(self.source, Team):
-            call = function(
-                "mark_below",
-                c_int,
-                POINTER(TeamRecord),
-                c_double,
-                *[c_int64] * 2,
-                *[c_void_p] * 2,
-                c_int,
-                *[c_void_p] * 3,
-            )
             matters = address(self._outside), address(self._inside), self._n_blinded
             blocks = len(self._outside)
             for first in range(0, blocks, BLOCKS):
                 budget.check()
                 last = min(first + BLOCKS, blocks)
-                if call(self.source.reference, threshold, first, last, *matters, *kept):
+                if loops.mark_below(self.source.record, threshold, first, last, *matters, *kept):
                     raise MemoryError
             return value.value, None if following.value < 0 else following.value
-        table = function("mark_values_below", None, c_void_p, c_double, c_int64, c_int64, *[c_void_p] * 3)
         for first in range(0, len(self.sizes), VALUES):
             budget.check()
             last = min(first + VALUES, len(self.sizes))
-            table(address(self.source), threshold, first, last, *kept)
+            loops.mark_values_below(address(self.source), threshold, first, last, *kept)
         return value.value, None if following.value < 0 else following.value
 
     def largest_inside(self, group: int) -> int:

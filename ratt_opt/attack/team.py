@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import ctypes
-from ctypes import POINTER, Structure, c_double, c_int32, c_void_p
 from functools import cached_property, lru_cache
 from itertools import chain
-from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeGuard
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 
 import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import InputError
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import TeamRecord, loops
 from ratt_opt.running.pace import Pace, PaceParams
 from ratt_opt.setfunctions.base import IMPROVEMENT
 from ratt_opt.setfunctions.information import InformationObjective, triangles
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "TeamRecord", "has_native_kernel", "work_of_value"]
+__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "has_native_kernel", "work_of_value"]
 
 MOST_ROBOTS = 32
 """Largest team whose subsets fit 32-bit masks; a team may have more robots."""
@@ -50,24 +49,6 @@ def work_of_value(targets: int, dimension: int) -> int:
     return targets * dimension**3
 
 
-class TeamRecord(Structure):
-    """``Team`` of ``native/src/team.h``."""
-
-    _fields_: ClassVar = [
-        ("robots", c_int32),
-        ("targets", c_int32),
-        ("dimension", c_int32),
-        ("criterion", c_int32),
-        ("weights", c_void_p),
-        ("prior", c_void_p),
-        ("information", c_void_p),
-        ("before", c_void_p),
-        ("before_all", c_double),
-        ("relative", c_double),
-        ("rounding", c_double),
-    ]
-
-
 class Team:
     """Information of the robots of one plan about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
@@ -80,7 +61,7 @@ class Team:
     """
 
     def __init__(self, objective: InformationObjective, prior: FloatArray, information: FloatArray) -> None:
-        if not has_native_kernel(objective):
+        if not has_native_kernel(objective) or (criterion := objective.compiled_code) is None:
             raise InputError("objective", "must be one that the compiled code supports", type(objective).__name__)
         robots, targets, d = len(information), objective.n_targets, objective.dimension
         entries = d * (d + 1) // 2
@@ -89,11 +70,21 @@ class Team:
         self.prior = checked("prior", prior, np.float64, (targets, entries))
         self.information = checked("information", information, np.float64, (robots, targets, entries))
         self._before = np.zeros(targets)
-        arrays = map(address, (self.weights, self.prior, self.information, self._before))
-        improvement = IMPROVEMENT.relative, objective.rounding
-        self.record = TeamRecord(robots, targets, d, objective.compiled_code, *arrays, 0.0, *improvement)
+        self.record = TeamRecord(
+            robots=robots,
+            targets=targets,
+            dimension=d,
+            criterion=criterion,
+            weights=address(self.weights),
+            prior=address(self.prior),
+            information=address(self.information),
+            before=None,
+            before_all=0.0,
+            relative=IMPROVEMENT.relative,
+            rounding=objective.rounding,
+        )
         self.pace = Pace(EXCHANGES)
-        function("criteria_before", None, POINTER(TeamRecord), c_void_p)(self.record, address(self._before))
+        loops.criteria_before(self.record, address(self._before))
 
     @classmethod
     def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
@@ -139,7 +130,7 @@ class Team:
     def value(self, robots: Iterable[int]) -> float:
         """Return the value of a set of robots."""
         sums = self.sums(robots)
-        return float(function("set_value", c_double, POINTER(TeamRecord), c_void_p)(self.record, address(sums)))
+        return loops.set_value(self.record, address(sums))
 
     def all_values(self) -> FloatArray:
         """(2**N,) values of all sets of robots, by bit mask.
@@ -151,14 +142,8 @@ class Team:
         if self.robots > MOST_TABULATED:
             raise InputError("information", f"must be of at most {MOST_TABULATED} robots", self.robots)
         values, sums = np.empty(2**self.robots), np.empty((self.robots + 1, *self.prior.shape))
-        call = function("all_values", None, POINTER(TeamRecord), c_void_p, c_void_p)
-        call(self.record, address(values), address(sums))
+        loops.all_values(self.record, address(values), address(sums))
         return values
-
-    @property
-    def reference(self) -> object:
-        """The record, as a function of the library takes it."""
-        return ctypes.byref(self.record)
 
     @property
     def work(self) -> int:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt.attack.pricing import GroupSearch, Question
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell, tick
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import GroupTreeRecord, RowRecord, loops
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.pricing import PricingProblem
     from ratt_opt.certificates.plan_sets import PlanSets
 
-__all__ = ["GroupTree", "TreeRecord", "group_tree", "sets_proof"]
+__all__ = ["GroupTree", "group_tree", "sets_proof"]
 
 Limit = tuple[int, int]
 """A set of robots (bit mask), and the most of these that sense in a group below the threshold."""
@@ -34,29 +34,6 @@ BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded", "limit"), ("worth",
 """Nodes by their numbers in the compiled code."""
 NUMBERED = (*BRANCHES, "flow")
 FINISHED, PAUSED, FULL = range(3)
-
-
-class TreeRecord(Structure):
-    """``GroupTree`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *(
-            (name, c_int64)
-            for name in (
-                "limit",
-                "averages",
-                "count",
-                "capacity",
-                "n_flows",
-                "most_flows",
-                "n_listed",
-                "most_listed",
-            )
-        ),
-        *((name, c_void_p) for name in ("nodes", "flows", "recent", "listed", "needs")),
-        ("n_limits", c_int64),
-        *((name, c_void_p) for name in ("limited", "most", "uses")),
-    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +67,25 @@ class _Trees:
         self.listed, self.needs = np.zeros((listed, robots), np.int8), np.zeros(listed, np.int64)
         self.limited = np.array([limited for limited, _ in limits], np.uint64)
         self.most, self.uses = np.array([most for _, most in limits], np.int64), np.zeros(len(limits), np.int64)
-        arrays = self.nodes, self.flows, self.recent, self.listed, self.needs
-        limited = self.limited, self.most, self.uses
-        numbers = limit, averages, 0, len(self.nodes), 0, flows, 0, listed
-        self.record = TreeRecord(*numbers, *map(address, arrays), len(limits), *map(address, limited))
+        self.record = GroupTreeRecord(
+            limit=limit,
+            averages=averages,
+            count=0,
+            capacity=len(self.nodes),
+            n_flows=0,
+            most_flows=flows,
+            n_listed=0,
+            most_listed=listed,
+            nodes=address(self.nodes),
+            flows=address(self.flows),
+            recent=address(self.recent),
+            listed=address(self.listed),
+            needs=address(self.needs),
+            n_limits=len(limits),
+            limited=address(self.limited),
+            most=address(self.most),
+            uses=address(self.uses),
+        )
 
     def named(self, places: list[int]) -> list[Any]:
         """The nodes as a certificate has them; ``places`` : of the limits there."""
@@ -121,17 +113,15 @@ def sets_proof(
         return {"size": size, "tree": ["budget"]}
     trees = _Trees(plan, 0, max_nodes, averages=sets.objective.verifier_averages, limits=limits)
     nobody = np.zeros(plan.robots, dtype=np.int64)
-    call = function("grow_sets_tree", c_int, c_void_p, POINTER(TreeRecord), *[c_void_p] * 3, *[c_int64] * 2)
     members = np.array([among is None or among >> i & 1 for i in range(plan.robots)], np.int8)
-    rows, depth = np.zeros((plan.robots + 1, 3), np.int64), np.full(1, -1, np.int32)
+    rows, depth = np.zeros(plan.robots + 1, RowRecord), np.full(1, -1, np.int32)
+    places = address(members), address(rows), address(depth)
     effort, looked, code = CRITERIA // sets.objective.n_targets, 0, PAUSED
     with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody) as search:
         while code == PAUSED and looked < MOST_CRITERIA:
             tick()
             tell(COVERING, trees.record.count)
-            code = call(
-                search.handle, byref(trees.record), address(members), address(rows), address(depth), size, effort
-            )
+            code = loops.grow_sets_tree(search.handle, trees.record, *places, size, effort)
             looked += CRITERIA
     if code != FINISHED:
         raise NotClosedError
@@ -150,13 +140,12 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Seque
     flows = min(MOST_FLOWS, FLOW_NUMBERS // max(links, 1))
     trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=MOST_LISTED, limits=limits)
     first = np.argsort(-question.duals, kind="stable").astype(np.int64)
-    call = function("grow_group_tree", c_int, c_void_p, POINTER(TreeRecord), c_int64)
     record, code = trees.record, PAUSED
     with GroupSearch(plan, question, first) as search:
         while code == PAUSED:
             tick()
             tell(COVERING, record.count)
-            code = call(search.handle, byref(record), CASES)
+            code = loops.grow_group_tree(search.handle, record, CASES)
     if code != FINISHED:
         raise NotClosedError
     masks = [sum(1 << int(i) for i in np.flatnonzero(row)) for row in trees.listed[: record.n_listed]]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ctypes import c_int, c_int64, c_void_p
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,8 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import neighbour_masks
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import BranchRecord, loops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["BRANCH", "LARGEST_MASK", "MOST_CUT", "NARROW", "GroupList", "groups_of"]
+__all__ = ["LARGEST_MASK", "MOST_CUT", "NARROW", "GroupList", "groups_of"]
 
 MOST_CUT = 255
 """Links that leave a group, up to which their number is a byte."""
@@ -30,7 +30,6 @@ NARROW = 32
 
 STEPS = 20_000
 """Steps between two looks at the clock, each of which lists one group at most: some milliseconds."""
-BRANCH = np.dtype([*((name, np.uint64) for name in ("inside", "outside", "near")), ("cut", np.int64)])
 
 
 def groups_of(threat: Threat) -> GroupList:
@@ -65,7 +64,7 @@ class GroupList:
         )
         self._neighbours = np.array(neighbour_masks(graph.n_robots, graph.links), dtype=np.uint64)
         self._protected = np.array(neighbour_masks(graph.n_robots, protected_links), dtype=np.uint64)
-        self._stack, self._position = np.zeros(2 * graph.n_robots + 2, BRANCH), np.zeros(2, np.int64)
+        self._stack, self._position = np.zeros(2 * graph.n_robots + 2, BranchRecord), np.zeros(2, np.int64)
         self._parts: list[tuple[NDArray[Any], NDArray[Any]]] = []
         self._count = 0
 
@@ -80,15 +79,10 @@ class GroupList:
 
     def go_on(self) -> None:
         """List some more."""
-        call = function(
-            "list_groups", c_int64, c_int, *[c_void_p] * 2, c_int64, *[c_void_p] * 2, *[c_int64] * 2, *[c_void_p] * 2
-        )
         groups, cuts = np.empty(STEPS, np.uint64), np.empty(STEPS, np.uint16)
-        given = self._neighbours, self._protected
-        state = address(self._stack), address(self._position)
-        found = call(
-            self.robots, *map(address, given), self._most_cut, *state, STEPS, STEPS, address(groups), address(cuts)
-        )
+        links = address(self._neighbours), address(self._protected)
+        state, places = (address(self._stack), address(self._position)), (address(groups), address(cuts))
+        found = loops.list_groups(self.robots, *links, self._most_cut, *state, STEPS, STEPS, *places)
         self._parts.append((groups[:found].astype(self._types[0]), cuts[:found].astype(self._types[1])))
         self._count += found
 

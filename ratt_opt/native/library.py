@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 import numpy as np
 
@@ -12,29 +12,36 @@ from ratt_opt.errors import InputError, printable
 from ratt_opt.native.sources import LIBRARY, RECORD, SOURCES, fault_of, fingerprint
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import DTypeLike, NDArray
 
-__all__ = ["address", "check_numbers", "checked", "function"]
+__all__ = ["Address", "address", "address_of", "check_numbers", "checked", "library"]
 
-ANYTHING = ctypes.c_char * 0
+Number = TypeVar("Number", bound=np.generic)
+Fields = TypeVar("Fields", bound=ctypes.Structure)
+Pointed_co = TypeVar("Pointed_co", covariant=True)
+
+ANYTHING: Any = ctypes.c_char * 0
 REMEDY = "install the package with pip, or, in a checkout, run python hatch_build.py"
 
 
 @cache
-def _library() -> ctypes.CDLL:
-    """Raises ``ImportError`` : it was never compiled, from other sources, or is not what was compiled."""
+def library() -> ctypes.CDLL:
+    """Load the compiled library.
+
+    Raises ``ImportError`` : it was never compiled, from other sources, or is not what was compiled.
+    """
     if fault := fault_of(LIBRARY, RECORD):
         raise ImportError(f"the loops of ratt_opt {fault}: {REMEDY}")
     try:
-        library = ctypes.CDLL(str(LIBRARY))
+        loaded = ctypes.CDLL(str(LIBRARY))
     except OSError as error:  # of another system, or a C library that is too old
         raise ImportError(f"the loops of ratt_opt cannot be loaded here ({printable(str(error))}): {REMEDY}") from None
-    library.sources.restype = ctypes.c_char_p
-    if SOURCES.is_dir() and library.sources().decode() != _present():
+    loaded.sources.restype = ctypes.c_char_p
+    if SOURCES.is_dir() and loaded.sources().decode() != _present():
         raise ImportError(f"the loops of ratt_opt were compiled from other sources: {REMEDY}")
-    return library
+    return loaded
 
 
 def _present() -> str:
@@ -42,14 +49,6 @@ def _present() -> str:
         return fingerprint()
     except OSError:
         return "a source is missing"
-
-
-@cache
-def function(name: str, result: Any, *arguments: Any) -> Any:
-    """A function of the library with its types; the interpreter is not held while it runs."""
-    found = getattr(_library(), name)
-    found.restype, found.argtypes = result, arguments
-    return found
 
 
 def checked(argument: str, array: Any, kind: DTypeLike, shape: Sequence[int], *, written: bool = False) -> NDArray[Any]:
@@ -76,8 +75,24 @@ def check_numbers(argument: str, numbers: NDArray[Any], least: int, count: int) 
         raise InputError(argument, f"must be in [{least}, {count - 1}]", numbers)
 
 
-def address(array: Any) -> int:
+class Address(int, Generic[Pointed_co]):
+    """Address of numbers or records of one type; an ``int``, whose type only mypy sees."""
+
+    if TYPE_CHECKING:
+
+        def __add__(self, offset: int) -> Address[Pointed_co]: ...
+
+
+_addressof: Callable[[Any], Address[Any]] = cast("Any", ctypes.addressof)
+
+
+def address(array: NDArray[Number]) -> Address[Number]:
     """Return the memory address of a checked array; it must be kept alive while C uses it."""
     if array.flags.writeable:  # in a quarter of the time
-        return ctypes.addressof(ANYTHING.from_buffer(array))
-    return int(array.ctypes.data)
+        return _addressof(ANYTHING.from_buffer(array))
+    return cast("Address[Number]", array.ctypes.data)
+
+
+def address_of(record: Fields) -> Address[Fields]:
+    """Return the memory address of a record; it must be kept alive while C uses it."""
+    return _addressof(record)

@@ -14,7 +14,7 @@ RECORD = FOLDER / "loops.sha256"
 
 COMPILED = """
     annealing column_annealing contexts cover cover_attacks cover_dive cut_annealing disjoint dominance elements
-    exchanges flow greedy group_tree groups keeping kept_links lattice layout levels marginal_dive needs outputs
+    exchanges flow greedy group_tree groups keeping kept_links lattice levels marginal_dive needs outputs
     polytopes pricing sets_of_size team thresholds
 """
 HEADERS = """

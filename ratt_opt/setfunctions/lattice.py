@@ -5,14 +5,14 @@ Every pass reads the table in its own order and makes no copy of it.
 
 from __future__ import annotations
 
-from ctypes import c_double, c_int, c_int64, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.errors import InputError
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,11 +52,10 @@ def marginal_ends(values: FloatArray, n: int) -> FloatArray:
     """
     table, ends = address(checked("values", values, np.float64, (1 << n,))), np.empty((2, n))
     ends[0], ends[1] = np.inf, -np.inf
-    call = function("marginal_ends", None, c_void_p, c_int, *[c_int64] * 2, *[c_void_p] * 2)
     low, high = address(ends[0]), address(ends[1])
     for i in range(n):
         for first, last in _parts(1 << (n - 1), SETS):
-            call(table, i, first, last, low + i * ends.itemsize, high + i * ends.itemsize)
+            loops.marginal_ends(table, i, first, last, low + i * ends.itemsize, high + i * ends.itemsize)
     return ends
 
 
@@ -66,17 +65,15 @@ def second_differences(values: FloatArray, n: int, budget: Budget) -> FloatArray
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of 2**n floats.
     """
     table, ends = address(checked("values", values, np.float64, (1 << n,))), np.zeros((n, n))
-    near = function("near_differences", None, c_void_p, c_int, *[c_int64] * 2, c_void_p)
-    far = function("far_differences", c_double, c_void_p, *[c_int] * 2, *[c_int64] * 2, c_double)
     for j in range(1, n):
         by = np.full(j, np.inf)
         for first, last in _parts(1 << (n - 1), NEAR_SETS):
             budget.check()
-            near(table, j, first, last, address(by))
+            loops.near_differences(table, j, first, last, address(by))
         for i in range(BLOCK_BITS, j):
             for first, last in _parts(1 << (n - 2), SETS):
                 budget.check()
-                by[i] = far(table, i, j, first, last, by[i])
+                by[i] = loops.far_differences(table, i, j, first, last, by[i])
         ends[:j, j] = by
     return ends
 
@@ -87,10 +84,9 @@ def disjoint_slack(values: FloatArray, budget: Budget) -> tuple[float, int, int]
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of floats.
     """
     table, (slack, sets) = address(checked("values", values, np.float64, (len(values),))), _nothing()
-    call = function("disjoint_slack", None, c_void_p, *[c_int64] * 2, *[c_void_p] * 2)
     for first, last in _parts(len(values), max(PAIRS // len(values), 1)):
         budget.check()
-        call(table, first, last, address(slack), address(sets))
+        loops.disjoint_slack(table, first, last, address(slack), address(sets))
     return float(slack[0]), int(sets[0]), int(sets[1])
 
 
@@ -100,10 +96,9 @@ def overlapping_slack(values: FloatArray, budget: Budget) -> tuple[float, int, i
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of floats.
     """
     table, (slack, sets) = address(checked("values", values, np.float64, (len(values),))), _nothing()
-    call = function("overlapping_slack", None, c_void_p, *[c_int64] * 3, *[c_void_p] * 2)
     for first, last in _parts(len(values), max(PAIRS // len(values), 1)):
         budget.check()
-        call(table, len(values), first, last, address(slack), address(sets))
+        loops.overlapping_slack(table, len(values), first, last, address(slack), address(sets))
     return float(slack[0]), int(sets[0]), int(sets[1])
 
 
@@ -136,11 +131,10 @@ def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget, noi
         raise InputError("sizes", "must be at least 1", sizes.min())
     table = address(checked("values", values, np.float64, (int(sizes.prod()),)))
     ratios, sets = np.full(2, np.inf), np.zeros(2, dtype=np.int64)
-    call = function("gain_ratio", None, c_void_p, c_int, c_void_p, *[c_int64] * 2, c_double, *[c_void_p] * 3)
     positions = np.empty(1 << len(sizes), dtype=np.int64)
     found = address(positions), address(ratios), address(sets)
     for first, last in _parts(len(values), max(PAIRS >> len(sizes), 1)):
         if budget.is_over:
             break
-        call(table, len(sizes), address(options), first, last, noise, *found)
+        loops.gain_ratio(table, len(sizes), address(options), first, last, noise, *found)
     return GainRatio(float(ratios[1]), float(ratios[0]), int(sets[0]), int(sets[1]))

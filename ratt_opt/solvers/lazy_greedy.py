@@ -15,12 +15,12 @@ last time it was: information only grows, so covariances only shrink.
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int64, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import GreedyRecord, loops
 from ratt_opt.setfunctions.criteria.two_by_two import triples
 
 if TYPE_CHECKING:
@@ -41,15 +41,6 @@ TARGETS_AT_ONCE = 1_000_000
 """Targets times candidates between two looks at the clock: some milliseconds."""
 
 
-class GreedyRecord(Structure):
-    """``Greedy`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("criterion", "targets", "width")),
-        *((name, c_void_p) for name in ("weights", "information", "sums", "covariances", "order", "bounds", "gains")),
-    ]
-
-
 class LazyGreedy:
     """Greedy choice among the elements of some robots, with the plain algorithm's answers.
 
@@ -60,7 +51,8 @@ class LazyGreedy:
     """
 
     def __init__(self, objective: InformationObjective, is_open: BoolArray) -> None:
-        self._objective, self._is_open = objective, is_open
+        assert objective.compiled_code is not None
+        self._objective, self._criterion, self._is_open = objective, objective.compiled_code, is_open
         checked("is_open", is_open, np.bool_, (objective.n,))
         self._information = _by_rows(objective.information, 0.0)
         self._sums = _by_rows(objective.prior_information, 1.0)
@@ -88,22 +80,31 @@ class LazyGreedy:
         """Fill in the gains of all candidates that come within ``close`` of the largest; -inf for the others."""
         targets, width, covariances = self._objective.n_targets, len(self._weights), _inverse(self._sums)
         order = np.argsort(-(self._weights * covariances[3])[:targets])
-        arrays = self._weights, self._information, self._sums, covariances, order, self._bounds, self._gains
-        record = GreedyRecord(self._objective.compiled_code, targets, width, *map(address, arrays))
-        call = function("evaluate_gains", c_double, POINTER(GreedyRecord), c_void_p, c_int64, *[c_double] * 2)
+        record = GreedyRecord(
+            criterion=self._criterion,
+            targets=targets,
+            width=width,
+            weights=address(self._weights),
+            information=address(self._information),
+            sums=address(self._sums),
+            covariances=address(covariances),
+            order=address(order),
+            bounds=address(self._bounds),
+            gains=address(self._gains),
+        )
         self._gains[:] = -np.inf
         bounds = np.where(self._is_open, self._bounds, -np.inf)
         first = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
         first = first[np.argsort(-bounds[first], kind="stable")]
         first = first[self._is_open[first]]
-        best = call(byref(record), address(first), len(first), self._close, -np.inf)
+        best = loops.evaluate_gains(record, address(first), len(first), self._close, -np.inf)
         bounds[first] = -np.inf
         left, size = np.flatnonzero(bounds >= best - self._close), max(TARGETS_AT_ONCE // width, 1)
         for start in range(0, len(left), size):
             if budget.is_over:
                 return False
             some = left[start : start + size]
-            best = call(byref(record), address(some), len(some), self._close, best)
+            best = loops.evaluate_gains(record, address(some), len(some), self._close, best)
         return True
 
     def _are_equal(self, elements: IntArray) -> bool:

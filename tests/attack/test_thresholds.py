@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
-
 import networkx as nx
 import numpy as np
 import pytest
@@ -11,29 +9,17 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attack import exact_cover, sets_below
 from ratt_opt.attack.all_sets import decide
-from ratt_opt.attack.annealing import AnnealRecord
-from ratt_opt.attack.columns import UNIT, Columns, ColumnsRecord, DualsRecord, IntegerDuals
-from ratt_opt.attack.edge_cuts.kept_links import KeptLinksRecord
-from ratt_opt.attack.exact_cover import CoverRecord, ExactCover
-from ratt_opt.attack.least_sets.sets_of_size import SetQuestionRecord
+from ratt_opt.attack.columns import UNIT, Columns, IntegerDuals
+from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.master import best_duals
-from ratt_opt.attack.pricing import QuestionRecord
 from ratt_opt.attack.sets_below import SetsBelow
-from ratt_opt.attack.size_vectors.disjoint_sets import ChoiceRecord, DisjointRecord
-from ratt_opt.attack.team import Team, TeamRecord
+from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.certificates.group_tree import TreeRecord
-from ratt_opt.curvatures.planar.contexts import DescentRecord
 from ratt_opt.graph import group_list
-from ratt_opt.graph.largest_group.annealed_cut import CutAnnealRecord
 from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
-from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
-from ratt_opt.solvers.lazy_greedy import GreedyRecord
 from tests.strategies import random_problem
-
-RECORDS = AnnealRecord, QuestionRecord, SetQuestionRecord, ChoiceRecord, DisjointRecord
 
 
 def members(mask):
@@ -244,17 +230,6 @@ def test_what_c_may_not_read_is_refused():
     for values in (np.ones(3), np.ones(4, np.float32), np.ones(8)[::2], np.empty(0)):
         with pytest.raises(ro.InputError):
             SetsBelow(values)
-
-
-def test_records_have_the_layout_that_c_expects():
-    layout = function("layout", None, ctypes.c_void_p)
-    sizes = np.zeros(16, np.int64)
-    layout(sizes.ctypes.data)
-    records = [ctypes.sizeof(record) for record in (*RECORDS, TreeRecord, CoverRecord)]
-    first = ctypes.sizeof(TeamRecord), group_list.BRANCH.itemsize, exact_cover.LEVEL.itemsize
-    of_graphs = ctypes.sizeof(KeptLinksRecord), ctypes.sizeof(CutAnnealRecord)
-    others = [ctypes.sizeof(record) for record in (GreedyRecord, DescentRecord, ColumnsRecord, DualsRecord)]
-    assert sizes.tolist() == [*first, *records, *of_graphs, *others]
 
 
 def test_the_example_of_the_page_of_the_engine():

@@ -21,7 +21,7 @@ def test_the_page_names_three_builds() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("gcc"), reason="gcc is not here")
-@pytest.mark.parametrize("options", [*OPTIONS, "-O1 -Wall -Wextra -Werror"])
+@pytest.mark.parametrize("options", [*OPTIONS, "-O1 -Wall -Wextra -Wmissing-prototypes -Werror"])
 def test_a_build_with_options_makes_the_library(options: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "gcc")
     monkeypatch.setenv("RATT_CFLAGS", options)

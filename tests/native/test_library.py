@@ -41,7 +41,7 @@ def test_only_arrays_of_the_type_shape_and_layout_are_read():
         checked("x", locked, np.float64, (2, 3), written=True)
 
 
-LOAD = "from ratt_opt.native.library import _library; print(_library().sources().decode())"
+LOAD = "from ratt_opt.native.library import library; print(library().sources().decode())"
 
 
 def loaded(folder: Path) -> subprocess.CompletedProcess[str]:

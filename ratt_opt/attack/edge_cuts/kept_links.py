@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_int, c_int64, c_void_p
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import KeptLinksRecord, loops
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,23 +19,9 @@ if TYPE_CHECKING:
     from ratt_opt.attack.edge_cuts.network import CutNetwork
     from ratt_opt.budget import Budget
 
-__all__ = ["KeptGroups", "KeptLinksRecord", "groups_above", "proof_tree", "some_groups_above"]
+__all__ = ["KeptGroups", "groups_above", "proof_tree", "some_groups_above"]
 
 FINISHED, PAUSED = 0, 1
-
-
-class KeptLinksRecord(Structure):
-    """``KeptLinks`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("robots", "links")),
-        *((name, c_void_p) for name in ("ends", "start", "arc", "weight", "price", "size")),
-        *((name, c_int64) for name in ("room", "threshold", "listing", "most_found", "found")),
-        *((name, c_void_p) for name in ("groups", "values")),
-        *((name, c_int64) for name in ("most_length", "length")),
-        ("tree", c_void_p),
-        ("nodes", c_int64),
-    ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,14 +55,30 @@ class _Search:
         start, arc = network.arcs
         given = [("ends", network.ends, (m, 2)), ("start", start, (n + 1,)), ("arc", arc, (2 * m,))]
         given += [("weight", weight, (m,)), ("prices", prices, (n,)), ("size", network.size, (n,))]
-        arrays = [checked(name, np.ascontiguousarray(array), np.int64, shape) for name, array, shape in given]
+        self._arrays = [checked(name, np.ascontiguousarray(array), np.int64, shape) for name, array, shape in given]
         self.groups = np.zeros((most_found, n), np.uint8)
-        values = np.zeros(most_found, np.int64)
+        self._values = np.zeros(most_found, np.int64)
         self.tree: NDArray[np.int64] = np.zeros(most_length, np.int64)
-        self._arrays = [*arrays, self.groups, values, self.tree]
-        places = [address(array) if array.size else None for array in self._arrays]
         self.record = KeptLinksRecord(
-            n, m, *places[:6], room, threshold, 0, most_found, 0, *places[6:8], most_length, 0, places[8], 0
+            robots=n,
+            links=m,
+            ends=address(self._arrays[0]),
+            start=address(self._arrays[1]),
+            arc=address(self._arrays[2]),
+            weight=address(self._arrays[3]),
+            price=address(self._arrays[4]),
+            size=address(self._arrays[5]),
+            room=room,
+            threshold=threshold,
+            listing=0,
+            most_found=most_found,
+            found=0,
+            groups=address(self.groups),
+            values=address(self._values),
+            most_length=most_length,
+            length=0,
+            tree=address(self.tree),
+            nodes=0,
         )
 
     def run(self, budget: Budget, most_nodes: int | None = None) -> Iterator[tuple[BoolArray, bool]]:
@@ -86,15 +88,14 @@ class _Search:
         ------
         OutOfBudget : nodes or seconds are spent, or the user interrupted.
         """
-        search = function("open_kept_links", c_void_p, POINTER(KeptLinksRecord))(byref(self.record))
+        search = loops.open_kept_links(self.record)
         if not search:
             raise MemoryError("groups of robots")
-        go_on = function("search_kept_links", c_int, c_void_p, c_int64)
         try:
             code = PAUSED
             while code != FINISHED and (most_nodes is None or self.record.nodes < most_nodes):
                 before = self.record.nodes
-                code = go_on(search, budget.nodes_left(PARAMS.nodes_at_once))
+                code = loops.search_kept_links(search, budget.nodes_left(PARAMS.nodes_at_once))
                 budget.nodes += self.record.nodes - before
                 if code != PAUSED:
                     yield self.groups[: self.record.found].astype(np.bool_), code == FINISHED
@@ -102,7 +103,7 @@ class _Search:
             if code == PAUSED:
                 yield self.groups[: self.record.found].astype(np.bool_), False
         finally:
-            function("close_kept_links", None, c_void_p)(search)
+            loops.close_kept_links(search)
 
 
 def some_groups_above(network: CutNetwork, prices: IntArray, room: int, budget: Budget, most_nodes: int) -> KeptGroups:

@@ -7,14 +7,13 @@ takes in plain NumPy.
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.team import TeamRecord
 from ratt_opt.budget import Budget
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import ScanRecord, loops
 from ratt_opt.setfunctions.information import from_triangles, triangles
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.team import Team
 
-__all__ = ["Scan", "descended", "exchanged", "weak_sets_of_size"]
+__all__ = ["descended", "exchanged", "new_scan", "weak_sets_of_size"]
 
 RANDOM_STARTS = 40
 """Starts beside those that the data suggest; each costs a local search, and with a few dozen in all attacks on teams of
@@ -38,15 +37,9 @@ BARRED, INSIDE, OUTSIDE = 0, 1, 2
 """State of a robot; a barred one takes part in no exchange."""
 
 
-class Scan(Structure):
-    """``Scan`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [*((name, c_int64) for name in ("next", "leaves", "enters")), ("lowest", c_double)]
-
-    @classmethod
-    def new(cls) -> Scan:
-        """Return a scan that has tried no exchange."""
-        return cls(0, -1, -1, np.inf)
+def new_scan() -> ScanRecord:
+    """Return a scan that has tried no exchange."""
+    return ScanRecord(next=0, leaves=-1, enters=-1, lowest=np.inf)
 
 
 def exchanged(
@@ -107,12 +100,11 @@ def _starts(team: Team, size: int) -> Iterator[IntArray]:
 
 def _settle(team: Team, kept: FloatArray, where: Any, budget: Budget) -> None:
     """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
-    call = function("exchange_robots", c_int, POINTER(TeamRecord), *[c_void_p] * 2, c_int64, POINTER(Scan))
-    sums, scan = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape), Scan.new()
+    sums, scan = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape), new_scan()
     finished = 0
     while not finished:
         with team.pace.timed(pairs := team.pace.units):
-            finished = call(team.reference, address(sums), address(where), pairs, byref(scan))
+            finished = loops.exchange_robots(team.record, address(sums), address(where), pairs, scan)
         if finished < 0:
             raise MemoryError
         if budget.is_over:

@@ -7,14 +7,13 @@ definite matrices. Per target a few "heavy" robots are enumerated: one polytope 
 
 from __future__ import annotations
 
-from ctypes import POINTER, c_int64, c_void_p
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.team import TeamRecord
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,8 +37,8 @@ SAFETY = 1e-9
 def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
     """Value of each target's information (..., M, 3) -> (..., M); minus infinity if it is not positive definite."""
     flat, values = np.ascontiguousarray(matrices), np.empty(matrices.shape[:-1])
-    call = function("planar_values_of_targets", None, POINTER(TeamRecord), c_int64, *[c_void_p] * 2)
-    call(family.team.reference, values.size // len(family.team.weights), address(flat), address(values))
+    count = values.size // len(family.team.weights)
+    loops.planar_values_of_targets(family.team.record, count, address(flat), address(values))
     return values
 
 
@@ -62,19 +61,18 @@ def _cut_polytopes(
         np.empty(most, np.uint64),
         np.zeros((n_targets, n_patterns), np.int64),
     )
-    call = function("cut_polytopes", c_int64, *[c_int64] * 4, *[c_void_p] * 6)
-    given = (np.ascontiguousarray(array) for array in (normals, offsets, factors))
-    arrays = (*given, vertices, rows, numbers)
-    total = call(n_targets, n_patterns, n_rows, CAPACITY, *map(address, arrays))
+    normals, offsets, factors = map(np.ascontiguousarray, (normals, offsets, factors))
+    given = address(normals), address(offsets), address(factors)
+    found = address(vertices), address(rows), address(numbers)
+    total = loops.cut_polytopes(n_targets, n_patterns, n_rows, CAPACITY, *given, *found)
     return vertices[:total].copy(), rows[:total].copy(), numbers
 
 
 def _vertex_values(family: SetFamily, starts: FloatArray, points: FloatArray, numbers: IntArray) -> FloatArray:
     """(V,) values of the information ``starts[j, p]`` (M, P, 3) plus each vertex of polytope ``(j, p)``."""
     starts, values = np.ascontiguousarray(starts), np.empty(len(points))
-    call = function("vertex_values", None, POINTER(TeamRecord), c_int64, *[c_void_p] * 4)
-    arrays = starts, points, numbers, values
-    call(family.team.reference, starts.shape[1], *map(address, arrays))
+    given = address(starts), address(points), address(numbers)
+    loops.vertex_values(family.team.record, starts.shape[1], *given, address(values))
     return values
 
 

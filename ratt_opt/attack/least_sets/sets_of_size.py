@@ -5,14 +5,14 @@ A depth-first search in C (``native/src/sets_of_size.c``), which pauses and goes
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p, cast
+from ctypes import byref, c_double, c_int64
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ratt_opt.attack.team import TeamRecord
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, address_of, checked
+from ratt_opt.native.loops import SetQuestionRecord, loops
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -48,19 +48,6 @@ class SetFamily:
         return cls(team, team.sums(chosen), team.information[robots], size)
 
 
-class SetQuestionRecord(Structure):
-    """``SetQuestion`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        ("team", c_void_p),
-        *((name, c_double) for name in ("threshold", "level", "limit")),
-        ("size", c_int64),
-        ("start", c_void_p),
-        *((name, c_int64) for name in ("candidates", "in_order")),
-        *((name, c_void_p) for name in ("order", "costs")),
-    ]
-
-
 class SetSearch:
     """The sets of ``size`` robots that are worth less than ``threshold``, whose robots cost less than ``limit``.
 
@@ -83,38 +70,43 @@ class SetSearch:
     ) -> None:
         self._team, self._inside = team, np.zeros(team.robots, dtype=np.bool_) if inside is None else inside
         order = np.arange(team.robots) if among is None else np.ascontiguousarray(among, dtype=np.int64)
-        spent = None if costs is None else checked("costs", costs, np.float64, (team.robots,))
-        self._arrays = team.sums(np.flatnonzero(self._inside)), order, spent
-        start, candidates, paid = (None if array is None else address(array) for array in self._arrays)
-        reference = cast(byref(team.record), c_void_p)
+        start = team.sums(np.flatnonzero(self._inside))
+        self._arrays = start, order, costs  # the record has their addresses only
         self._record = SetQuestionRecord(
-            reference, threshold, 0.0, limit, size, start, len(order), in_order, candidates, paid
+            team=address_of(team.record),
+            threshold=threshold,
+            level=0.0,
+            limit=limit,
+            size=size,
+            start=address(start),
+            candidates=len(order),
+            in_order=in_order,
+            order=address(order),
+            costs=None if costs is None else address(checked("costs", costs, np.float64, (team.robots,))),
         )
         self._chosen = np.zeros(team.robots, dtype=np.bool_)
         self.nodes = 0
         self.lower(threshold)
-        self._handle = function("open_sets", c_void_p, POINTER(SetQuestionRecord))(byref(self._record))
+        self._handle = loops.open_sets(self._record)
         if not self._handle:
             raise MemoryError
 
     def __del__(self) -> None:
         """Free what the search holds."""
         if getattr(self, "_handle", None):
-            function("close_sets", None, c_void_p)(self._handle)
+            loops.close_sets(self._handle)
             self._handle = None
 
     def lower(self, threshold: float, limit: float = np.inf) -> None:
         """Make the threshold and the limit no larger than these."""
         record = self._record
         record.threshold, record.limit = min(record.threshold, threshold), min(record.limit, limit)
-        call = function("level_of_threshold", c_double, POINTER(TeamRecord), c_double)
-        record.level = call(self._team.record, record.threshold)
+        record.level = loops.level_of_threshold(self._team.record, record.threshold)
 
     def next(self, nodes: int) -> BoolArray | Literal[False] | None:
         """The next set (N,), those inside included; ``None`` after ``nodes`` nodes, ``False`` if there is none."""
         value, progress = c_double(0.0), c_int64(0)
-        call = function("next_set_below", c_int, c_void_p, c_int64, *[c_void_p] * 3)
-        code = call(self._handle, nodes, address(self._chosen), byref(value), byref(progress))
+        code = loops.next_set_below(self._handle, nodes, address(self._chosen), byref(value), byref(progress))
         self.nodes = progress.value
         if code != FOUND:
             return False if code == FINISHED else None
@@ -126,16 +118,15 @@ class SetSearch:
         ``masks`` : (C,) bit ``i`` is robot ``i``, at most 63 robots, without those inside; ``values`` : (C,)
         """
         rows, progress = c_int64(count), c_int64(0)
-        call = function("list_sets_below", c_int, c_void_p, *[c_int64] * 2, *[c_void_p] * 5)
         places = address(self._chosen), address(masks), address(values), byref(rows), byref(progress)
-        code = call(self._handle, nodes, len(masks), *places)
+        code = loops.list_sets_below(self._handle, nodes, len(masks), *places)
         self.nodes = progress.value
         return rows.value, code == FINISHED
 
     @property
     def least_open(self) -> float:
         """A value that no set still open is below, or the threshold, if that is less; infinite if none is open."""
-        return float(function("least_open", c_double, c_void_p)(self._handle))
+        return loops.least_open(self._handle)
 
 
 class BoundedSets:

@@ -8,13 +8,14 @@ minimum of falling temperature (Nesterov, Math. Program. 103, 2005) and the smoo
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int64, c_void_p
+from ctypes import byref, c_double
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import ProgramRecord, loops
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -49,15 +50,6 @@ class Multipliers:
         return np.ascontiguousarray(np.concatenate([self.slopes, self.own], axis=1), dtype=np.float64)
 
 
-class ProgramRecord(Structure):
-    """``Program`` of ``native/src/polytopes.c``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("targets", "robots", "heavies", "patterns", "size")),
-        *((name, c_void_p) for name in ("first", "pattern", "values", "light", "inside", "heavy", "information")),
-    ]
-
-
 @dataclass(frozen=True, slots=True)
 class DualProgram:
     """The function to maximise.
@@ -80,26 +72,28 @@ class DualProgram:
         self, multipliers: Multipliers, temperature: float, gradient: FloatArray, fraction: FloatArray
     ) -> tuple[float, float]:
         """The bound and its smoothed value; adds to ``gradient`` (M, 3 + h) and fills ``fraction`` (F,)."""
-        call = function("smoothed_bound", c_double, POINTER(ProgramRecord), c_void_p, c_double, *[c_void_p] * 5)
         given, soft = multipliers.together(), c_double(0.0)
         rest, spare = np.empty(len(self.values)), np.empty(len(self.patterns) + 2 * len(self.information))
-        places = *map(address, (gradient, fraction)), byref(soft), *map(address, (rest, spare))
-        bound = call(byref(self._record()), address(given), temperature, *places)
-        return float(bound), soft.value
+        places = address(gradient), address(fraction), byref(soft), address(rest), address(spare)
+        return loops.smoothed_bound(self._record(), address(given), temperature, *places), soft.value
 
     def _record(self) -> ProgramRecord:
         """Record that the C code reads; it holds the addresses of this program's arrays."""
         (n_targets, n_heavy), n_patterns, n_robots = self.heavy.shape, len(self.patterns), len(self.information)
-        arrays = (
-            checked("first", self.first, np.int64, (n_targets + 1,)),
-            checked("pattern", self.pattern, np.int64, self.values.shape),
-            checked("values", self.values, np.float64, self.values.shape),
-            checked("light", self.light, np.float64, (len(self.values), 3)),
-            checked("patterns", self.patterns, np.float64, (n_patterns, n_heavy)),
-            checked("heavy", self.heavy, np.int64, (n_targets, n_heavy)),
-            checked("information", self.information, np.float64, (n_robots, n_targets, 3)),
+        return ProgramRecord(
+            targets=n_targets,
+            robots=n_robots,
+            heavies=n_heavy,
+            patterns=n_patterns,
+            size=self.size,
+            first=address(checked("first", self.first, np.int64, (n_targets + 1,))),
+            pattern=address(checked("pattern", self.pattern, np.int64, self.values.shape)),
+            values=address(checked("values", self.values, np.float64, self.values.shape)),
+            light=address(checked("light", self.light, np.float64, (len(self.values), 3))),
+            inside=address(checked("patterns", self.patterns, np.float64, (n_patterns, n_heavy))),
+            heavy=address(checked("heavy", self.heavy, np.int64, (n_targets, n_heavy))),
+            information=address(checked("information", self.information, np.float64, (n_robots, n_targets, 3))),
         )
-        return ProgramRecord(n_targets, n_robots, n_heavy, n_patterns, self.size, *map(address, arrays))
 
     def ascend(
         self, start: Multipliers, goal: float, *, cold: bool, budget: Budget | None = None
@@ -129,8 +123,7 @@ class DualProgram:
     def rest(self, multipliers: Multipliers) -> FloatArray:
         """(V,) value of each point minus what the multipliers say."""
         rest, given, spare = np.empty(len(self.values)), multipliers.together(), np.empty(len(self.patterns))
-        call = function("rest_of_vertices", None, POINTER(ProgramRecord), *[c_void_p] * 3)
-        call(byref(self._record()), *map(address, (given, rest, spare)))
+        loops.rest_of_vertices(self._record(), address(given), address(rest), address(spare))
         return rest
 
     def least(self, rest: FloatArray) -> FloatArray:

@@ -11,7 +11,6 @@ here from all vertices, so nothing depends on the ascent, nor on its end.
 
 from __future__ import annotations
 
-from ctypes import c_int64, c_void_p
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -19,7 +18,8 @@ import numpy as np
 
 from ratt_opt.attack.least_sets.outer_polytopes import RANK_ONE, OuterPolytopes, outer_polytopes, target_values
 from ratt_opt.attack.least_sets.smoothed_dual import DualProgram, Multipliers
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -135,9 +135,8 @@ def _normals(
     width = np.maximum(BINDING * np.abs(constants), 1e-300)
     closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(width, counts)
     weights = np.zeros((len(points.heavy), points.normals.shape[1]))
-    arrays = points.first, np.ascontiguousarray(closeness), np.ascontiguousarray(points.rows), weights
-    call = function("facet_weights", None, *[c_int64] * 2, *[c_void_p] * 4)
-    call(*weights.shape, *map(address, arrays))
+    near, rows = np.ascontiguousarray(closeness), np.ascontiguousarray(points.rows)
+    loops.facet_weights(*weights.shape, address(points.first), address(near), address(rows), address(weights))
     weights[:, 6 : 6 + RANK_ONE] = 0.0  # those are there anyway
     order = np.argsort(-weights, axis=1, kind="stable")[:, :KEPT, None]
     kept = np.take_along_axis(points.normals, order, axis=1)

@@ -15,7 +15,6 @@ take off the room between the bound and ``t`` must stay below it.
 
 from __future__ import annotations
 
-from ctypes import c_int64, c_void_p
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -24,7 +23,8 @@ import numpy as np
 from ratt_opt.attack.size_vectors.disjoint_sets import SetColumns
 from ratt_opt.budget import Stop
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.native.library import address, function
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -264,9 +264,8 @@ class _DualProgram:
 
 def _sums(masks: MaskArray, amounts: FloatArray) -> FloatArray:
     """(K,) sum of the amounts of the robots in each mask."""
-    sums = np.zeros(len(masks))
-    call = function("sums_of_sets", None, c_int64, *[c_void_p] * 3)
-    call(len(masks), *map(address, (np.ascontiguousarray(masks), np.ascontiguousarray(amounts), sums)))
+    sums, masks, amounts = np.zeros(len(masks)), np.ascontiguousarray(masks), np.ascontiguousarray(amounts)
+    loops.sums_of_sets(len(masks), address(masks), address(amounts), address(sums))
     return sums
 
 

@@ -8,15 +8,14 @@ completion.
 
 from __future__ import annotations
 
-import ctypes
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int32, c_int64, c_uint64, c_void_p
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attack.least_sets.sets_of_size import SetSearch
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, address_of, checked
+from ratt_opt.native.loops import ChoiceRecord, DisjointSetsRecord, loops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -178,31 +177,6 @@ class Rest:
         return -np.inf
 
 
-class ChoiceRecord(Structure):
-    """``Choice`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_uint64) for name in ("decided", "rest")),
-        *((name, c_int64) for name in ("next", "chosen")),
-        *((name, c_double) for name in ("cost", "value")),
-        ("counts", c_void_p),
-        *((name, c_int32) for name in ("option", "places", "kept", "unused")),
-    ]
-
-
-class DisjointRecord(Structure):
-    """``DisjointSets`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("robots", "classes", "rest", "n_blinded")),
-        *((name, c_void_p) for name in ("masks", "values", "costs", "starts", "rest_costs", "single")),
-        ("must", c_uint64),
-        *((name, c_double) for name in ("threshold", "room")),
-        *((name, c_int64) for name in ("remembered", "depth", "found")),
-        *((name, c_void_p) for name in ("memory", "stack", "best")),
-    ]
-
-
 class DisjointSets:
     """Finds the sets whose largest value is least; :meth:`run` goes on until all families are decided.
 
@@ -214,14 +188,7 @@ class DisjointSets:
     def __init__(self, columns: SetColumns, rest: Rest, threshold: float) -> None:
         robots, classes = len(rest.single), len(columns.counts)
         self._columns = columns
-        self._arrays = (
-            checked("masks", columns.masks, np.uint64, columns.masks.shape),
-            checked("values", columns.values, np.float64, columns.masks.shape),
-            checked("costs", columns.costs, np.float64, columns.masks.shape),
-            checked("starts", columns.starts, np.int64, (classes, robots + 1)),
-            checked("rest_costs", np.ascontiguousarray(columns.rest_costs), np.float64, (robots,)),
-            checked("single", np.ascontiguousarray(rest.single), np.float64, (robots,)),
-        )
+        self._kept = np.ascontiguousarray(columns.rest_costs), np.ascontiguousarray(rest.single)
         self._memory, self._best = np.zeros((MEMORY, 2), np.uint64), np.zeros(robots + 1, np.int64)
         self._counts = np.zeros((robots + 2, classes), np.int32)
         self._counts[0] = columns.counts
@@ -231,15 +198,27 @@ class DisjointSets:
         first = self._stack[0]
         first.decided, first.option, first.value = columns.taken, -1, -np.inf
         first.places, first.kept = rest.size, rest.size - rest.n_blinded
-        self._record = DisjointRecord(
-            robots, classes, rest.size, rest.n_blinded, *map(address, self._arrays), rest.must, threshold, columns.room
+        self._record = DisjointSetsRecord(
+            robots=robots,
+            classes=classes,
+            rest=rest.size,
+            n_blinded=rest.n_blinded,
+            masks=address(checked("masks", columns.masks, np.uint64, columns.masks.shape)),
+            values=address(checked("values", columns.values, np.float64, columns.masks.shape)),
+            costs=address(checked("costs", columns.costs, np.float64, columns.masks.shape)),
+            starts=address(checked("starts", columns.starts, np.int64, (classes, robots + 1))),
+            rest_costs=address(checked("rest_costs", self._kept[0], np.float64, (robots,))),
+            single=address(checked("single", self._kept[1], np.float64, (robots,))),
+            must=rest.must,
+            threshold=threshold,
+            room=columns.room,
+            remembered=MEMORY,
+            depth=0,
+            found=0,
+            memory=address(self._memory),
+            stack=address_of(first),
+            best=address(self._best),
         )
-        self._record.remembered, self._record.memory, self._record.best = (
-            MEMORY,
-            address(self._memory),
-            address(self._best),
-        )
-        self._record.stack = ctypes.addressof(self._stack)
 
     @property
     def value(self) -> float:
@@ -257,10 +236,9 @@ class DisjointSets:
         ------
         OutOfBudget : the time is up, or no node is left.
         """
-        call = function("search_disjoint", c_int, POINTER(DisjointRecord), c_int64)
         while looks > 0:
             budget.spend(budget.nodes_left(NODES))
-            if call(byref(self._record), WORK):
+            if loops.search_disjoint(self._record, WORK):
                 return True
             looks -= 1
         return False

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, byref, c_double, c_int, c_int64, c_void_p
+from ctypes import byref, c_double
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.exchanges import Scan, descended, weak_sets_of_size
-from ratt_opt.attack.team import TeamRecord
-from ratt_opt.native.library import address, function
+from ratt_opt.attack.least_sets.exchanges import descended, new_scan, weak_sets_of_size
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -112,15 +112,6 @@ STRENGTH = 3
 SEED = 0
 SHARE = 1e-3
 """Weight of the two groups' sum beside the largest value."""
-EXCHANGE_GROUPS = (
-    POINTER(TeamRecord),
-    c_int,
-    *[c_void_p] * 2,
-    c_double,
-    c_int64,
-    POINTER(Scan),
-    c_void_p,
-)
 
 
 class GroupExchanges:
@@ -184,13 +175,12 @@ class GroupExchanges:
         return tuple(frozenset(np.flatnonzero(self._home == g).tolist()) for g in range(1, len(self.sizes) + 1))
 
     def _improve(self, home: IntArray, budget: Budget) -> None:
-        call, team = function("exchange_groups", c_int, *EXCHANGE_GROUPS), self._team
-        must = np.ascontiguousarray(self._must, dtype=np.bool_)
-        home, value, scan = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf), Scan.new()
+        team, sizes, must = self._team, len(self.sizes), np.ascontiguousarray(self._must, dtype=np.bool_)
+        home, value, scan = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf), new_scan()
         places, finished = (address(home), address(must)), 0
         while not finished:
             with team.pace.timed(pairs := team.pace.units):
-                finished = call(team.reference, len(self.sizes), *places, SHARE, pairs, byref(scan), byref(value))
+                finished = loops.exchange_groups(team.record, sizes, *places, SHARE, pairs, scan, byref(value))
             if finished < 0:
                 raise MemoryError
             finished = finished or budget.is_over

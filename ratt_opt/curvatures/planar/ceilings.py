@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from ctypes import c_int64, c_void_p
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.curvatures.planar.level_program import MARGIN
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,7 +57,6 @@ def _sums_of_largest(
     ``owners`` : (K,) ascending; ``levels`` : (B, K); ``slopes`` : (B,); ``own`` : (K, S)
     """
     (count, width), rows = own.shape, len(levels)
-    call = function("sum_ceilings", None, *[c_int64] * 3, *[c_void_p] * 7)
     found, best = np.empty((2, rows, width)), np.empty(width)
     checked("levels", levels, np.float64, (rows, count))
     checked("slopes", slopes, np.float64, (rows,))
@@ -65,7 +64,7 @@ def _sums_of_largest(
     place, spare = address(checked("own", own, np.float64, (count, width))), address(best)
     step = max(TERMS // max(own.size, 1), 1)
     for first in range(0, rows, step):
-        some = map(address, (levels[first:], slopes[first:]))
-        sums = map(address, (found[0, first:], found[1, first:]))
-        call(min(step, rows - first), count, width, owned, *some, place, spare, *sums)
+        given = owned, address(levels[first:]), address(slopes[first:]), place
+        sums = address(found[0, first:]), address(found[1, first:])
+        loops.sum_ceilings(min(step, rows - first), count, width, *given, spare, *sums)
     return found[0], found[1]

@@ -5,14 +5,14 @@ Targets are mean, even and odd parts, see :class:`~ratt_opt.setfunctions.planar_
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import DescentRecord, loops
 from ratt_opt.setfunctions.base import IMPROVEMENT
 
 if TYPE_CHECKING:
@@ -74,16 +74,6 @@ def _smallest(total: FloatArray) -> FloatArray:
     return np.asarray((total[..., 0, :] - np.sqrt(even * even + odd * odd)).min(axis=-1))
 
 
-class DescentRecord(Structure):
-    """``Descent`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("owners", "targets")),
-        *((name, c_double) for name in ("sign", "value", "relative", "rounding")),
-        *((name, c_void_p) for name in ("parts", "ends", "added", "total", "picks", "rest", "one")),
-    ]
-
-
 class PlanarDescent:
     """``value`` is the marginal of an element in the context ``picks`` (R,), the smallest of those seen.
 
@@ -98,7 +88,7 @@ class PlanarDescent:
         self._rounding = rounding
         self._ends = np.append(options.first, len(options.owners))
         self._total, self._picks = np.empty(base.shape), options.first.copy()
-        self._arrays, self._record = self._for_c()
+        self._record = self._for_c()
         self._starts: set[tuple[int, ...]] = set()
         self._paired: tuple[int, ...] | None = None
         self.picks = options.first.copy()
@@ -135,30 +125,34 @@ class PlanarDescent:
         self._picks[:], self._total[:] = picks, self._sum(picks)
         self._record.value = self._sign * self._best(self._total[None])[1]
         if budget is None:
-            call = function("descend", c_int, POINTER(DescentRecord))
-            while call(byref(self._record)):
+            while loops.descend(self._record):
                 pass
         else:
-            call = function("descend_pairs", None, POINTER(DescentRecord), c_int64)
             for i in range(len(picks)):
                 if budget.is_over:
                     break
-                call(byref(self._record), i)
+                loops.descend_pairs(self._record, i)
         self._keep(self._picks, self._best(self._sum(self._picks)[None])[1])
 
-    def _for_c(self) -> tuple[list[FloatArray | IntArray], DescentRecord]:
-        """The record of the descent, and arrays that it points to."""
+    def _for_c(self) -> DescentRecord:
+        """Return the record of the descent, which has the addresses of its arrays only."""
         count, targets, owners = len(self._options.owners), self._base.shape[-1], len(self._picks)
-        arrays = [
-            checked("parts", self._options.parts, np.float64, (count, 3, targets)),
-            checked("first", self._ends, np.int64, (owners + 1,)),
-            checked("added", self._added, np.float64, (3, targets)),
-            checked("base", self._total, np.float64, (3, targets)),
-            checked("first", self._picks, np.int64, (owners,)),
-            *np.empty((2, 3, targets)),
-        ]
-        improvement = IMPROVEMENT.relative, self._rounding
-        return arrays, DescentRecord(owners, targets, self._sign, 0.0, *improvement, *map(address, arrays))
+        self._spare = np.empty((2, 3, targets))
+        return DescentRecord(
+            owners=owners,
+            targets=targets,
+            sign=self._sign,
+            value=0.0,
+            relative=IMPROVEMENT.relative,
+            rounding=self._rounding,
+            parts=address(checked("parts", self._options.parts, np.float64, (count, 3, targets))),
+            ends=address(checked("first", self._ends, np.int64, (owners + 1,))),
+            added=address(checked("added", self._added, np.float64, (3, targets))),
+            total=address(checked("base", self._total, np.float64, (3, targets))),
+            picks=address(checked("first", self._picks, np.int64, (owners,))),
+            rest=address(self._spare[0]),
+            one=address(self._spare[1]),
+        )
 
     def _keep(self, picks: IntArray, value: float) -> None:
         least = max(IMPROVEMENT.relative * abs(self.value), self._rounding)  # or two contexts would take turns

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int64, c_void_p, cast
+from ctypes import c_void_p, cast
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.largest_group.counting import largest_left
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import CutAnnealRecord, loops
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -101,17 +102,6 @@ class Network:
         return cls(start, arcs[order, 1].copy(), np.tile(price, 2)[order])
 
 
-class CutAnnealRecord(Structure):
-    """``CutAnneal`` of ``native/src/records.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("robots", "groups", "most")),
-        *((name, c_void_p) for name in ("start", "robot", "price", "counts", "group", "best", "sizes")),
-        *((name, c_double) for name in ("hot", "cold", "oversize")),
-        *((name, c_void_p) for name in ("random", "uniform")),
-    ]
-
-
 class Cooling:
     """One cooling from the labels ``group`` (N,) below ``count``; ``best`` : (N,) those of the fewest links cut.
 
@@ -134,26 +124,36 @@ class Cooling:
         unit: float = 1.0,
     ) -> None:
         n_robots, arcs = len(network.start) - 1, len(network.robot)
-        shapes = {"start": n_robots + 1, "robot": arcs, "price": arcs}
-        given = [checked(name, getattr(network, name), np.int64, (length,)) for name, length in shapes.items()]
-        given.append(checked("counts", counts, np.int64, (n_robots,)))
-        given.append(checked("group", group, np.int64, (n_robots,), written=True))
+        checked("group", group, np.int64, (n_robots,), written=True)
         if not ((group >= 0) & (group < count)).all():
             raise InputError("group", f"must be in [0, {count - 1}]", group)
         self.best, sizes = group.copy(), np.bincount(group, counts, minlength=count).astype(np.int64)
-        self._arrays = [*given, self.best, sizes]
+        self._arrays = network, counts, group, sizes  # the record has their addresses only
         # The state of NumPy's generator, and the function of its that reads it: `bitgen_t` in its reference.
         self._rng, bits = rng, rng.bit_generator.ctypes
-        source = bits.state_address, cast(bits.next_double, c_void_p)
-        where = map(address, self._arrays)
         oversize = (
             max(OVERSIZE, 1.5 * arcs / n_robots) * unit * max(int((counts > 0).sum()), 1) / max(int(counts.sum()), 1)
         )
-        self._record = CutAnnealRecord(n_robots, count, size, *where, HOT * unit, COLD * unit, oversize, *source)
+        self._record = CutAnnealRecord(
+            robots=n_robots,
+            groups=count,
+            most=size,
+            start=address(checked("start", network.start, np.int64, (n_robots + 1,))),
+            robot=address(checked("robot", network.robot, np.int64, (arcs,))),
+            price=address(checked("price", network.price, np.int64, (arcs,))),
+            counts=address(checked("counts", counts, np.int64, (n_robots,))),
+            group=address(group),
+            best=address(self.best),
+            sizes=address(sizes),
+            hot=HOT * unit,
+            cold=COLD * unit,
+            oversize=oversize,
+            random=bits.state_address,
+            uniform=cast(bits.next_double, c_void_p).value,
+        )
         self.fewest = np.iinfo(np.int64).max
 
     def run(self, first: int, last: int, moves: int, fewest: int) -> int:
         """Go through some of the ``moves``; the fewest links cut so far, less than ``fewest``, or that."""
-        call = function("anneal_cut", c_int64, POINTER(CutAnnealRecord), *[c_int64] * 4)
-        self.fewest = int(call(byref(self._record), first, last, moves, fewest))
+        self.fewest = loops.anneal_cut(self._record, first, last, moves, fewest)
         return self.fewest

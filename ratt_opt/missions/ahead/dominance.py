@@ -8,13 +8,13 @@ are right; if they are not, fractions do.
 
 from __future__ import annotations
 
-from ctypes import c_double, c_int64, c_void_p
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -68,9 +68,8 @@ def _compared(entries: FloatArray) -> NDArray[np.int8]:
     """(K, K) whether the first of a pair dominates the second, as far as floats tell; of equal ones the first does."""
     count, rows = entries.shape[:2]
     found = np.zeros((count, count), np.int8)
-    call = function("compare_elements", None, c_void_p, c_int64, c_int64, c_double, c_double, c_void_p)
     given = checked("entries", np.ascontiguousarray(entries), np.float64, (count, rows, 3))
-    call(address(given), count, rows, ROUNDINGS, SMALLEST, address(found))
+    loops.compare_elements(address(given), count, rows, ROUNDINGS, SMALLEST, address(found))
     return found
 
 

@@ -1,6 +1,5 @@
 /* Annealed attacks and cuts. */
 #pragma once
-
 #include "team.h"
 
 /* An annealed attack; arcs of robot i are start[i]..start[i + 1] - 1. */

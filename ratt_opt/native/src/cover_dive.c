@@ -155,7 +155,7 @@ static int64_t ask_sums(const Choices *choices, const Sums *sums, Stack *stack, 
     return steps;
 }
 
-static int64_t write_node(Record *record, Node node) {
+static int64_t write_node(Nodes *record, Node node) {
     record->nodes[record->size] = node;
     return record->size++;
 }
@@ -173,7 +173,7 @@ static int64_t highest(const Choices *choices, const Sums *sums, const Step *mad
 }
 
 /* Take back the steps of a frame, and write those on which the dead end depends before node `proof`; the first node. */
-static int64_t take_back(const Choices *choices, const Sums *sums, Stack *stack, Record *record, int64_t frame, int64_t proof,
+static int64_t take_back(const Choices *choices, const Sums *sums, Stack *stack, Nodes *record, int64_t frame, int64_t proof,
                          uint64_t *conflict) {
     while (stack->count > stack->first[frame]) {
         const Step *made = stack->steps + --stack->count;
@@ -204,7 +204,7 @@ static void find_conflict(const Choices *choices, const Covers *covers, const Su
 }
 
 /* Leave a dead end, and the frames before it that are dead ends for the same reason; whether all are. */
-static int leave(const Choices *choices, const Covers *covers, const Sums *sums, Stack *stack, Record *record, int64_t kind, int64_t what,
+static int leave(const Choices *choices, const Covers *covers, const Sums *sums, Stack *stack, Nodes *record, int64_t kind, int64_t what,
                  Scratch *scratch) {
     int64_t robots = choices->robots, frame = stack->frame;
     uint64_t *conflict = scratch->conflict;
@@ -259,7 +259,7 @@ static int fix(const Choices *choices, const Covers *covers, Stack *stack) {
     return 1;
 }
 
-int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Record *record, double level,
+int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Nodes *record, double level,
                    int64_t nodes, int64_t most, int *outcome) {
     Scratch scratch;
     if (prepare_scratch(&scratch, choices, ways->groups)) return 1;

@@ -1,6 +1,5 @@
 /* The search by covers: conditions that every plan worth more than a level meets, and a search in depth by them. */
 #pragma once
-
 #include "elements.h"
 
 /* What forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end. */
@@ -52,16 +51,17 @@ typedef struct {
     double *activity;      /* (robots) dead ends that depended on a robot's elements */
 } Stack;
 
-/* A node of the record: what ends a frame (robot -1), or a step before the `next` node; the last one is the root.
+/* A node of a proof: what ends a frame (robot -1), or a step before the `next` node; the last one is the root.
    `subject`: a cover, a sum, or the node of the dead end; `place`: of an element among its robot's. */
 typedef struct {
     int64_t kind, subject, robot, place, next;
 } Node;
 
+/* Nodes of a proof in a growing array. */
 typedef struct {
     int64_t size, room;
     Node *nodes; /* (room) */
-} Record;
+} Nodes;
 
 /* Memory that a call works in. */
 typedef struct {
@@ -99,5 +99,5 @@ EXPORTED int keep_elements(const Choices *choices, const uint8_t *inside, const 
                            double *paid);
 /* Search on for some nodes; *outcome says how that ended. `most`: partitions that are tried at a node. 1 where memory is
    short, else 0. */
-EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Record *record,
+EXPORTED int dive_by_covers(const Choices *choices, const Ways *ways, Covers *covers, const Sums *sums, Stack *stack, Nodes *record,
                             double level, int64_t nodes, int64_t most, int *outcome);

@@ -1,9 +1,8 @@
 /* Elements that robots choose from: what each tells about the targets, and what is gained by that (trace, log-det). */
 #pragma once
-
 #include "team.h"
 
-/* Symmetric matrices are packed as in team.h. */
+/* Elements and the targets. Symmetric matrices are packed as in team.h. */
 typedef struct {
     int64_t elements, targets, entries; /* entries = dimension (dimension + 1) / 2 */
     int32_t dimension, criterion;

@@ -1,6 +1,5 @@
 /* The search for a group of negative reduced cost, shared by the files of pricing. */
 #pragma once
-
 #include "pricing.h"
 
 static const double ROUNDING = 1e-10; /* relative: averages must be higher to prove anything */

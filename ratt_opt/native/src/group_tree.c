@@ -267,7 +267,7 @@ static int closing_leaf(const Proof *p, const Row *row, int depth) {
 
 /* Go on with the tree of the rows down to `*depth`: FINISHED, OPEN if some set is worth less, FULL, or PAUSED once so many robots
    were valued. */
-static int write_sets(Proof *p, Row *rows, int32_t *depth, int64_t effort) {
+static int write_sets(Proof *p, Row rows[], int32_t *depth, int64_t effort) {
     Search *s = p->s;
     int n = p->robots;
     while (*depth >= 0) {
@@ -480,7 +480,7 @@ static int expand(Proof *p) {
     return PAUSED;
 }
 
-int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row *rows, int32_t *depth, int64_t size, int64_t effort) {
+int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row rows[], int32_t *depth, int64_t size, int64_t effort) {
     Proof p = {.s = s, .robots = s->robots, .out = out, .by_limits = out->n_limits > 0};
     if (*depth < 0) {
         memcpy(s->sums, s->q.team->prior, (size_t)s->width * sizeof(double));

@@ -1,6 +1,5 @@
 /* Groups that an attack may leave, and exact covers of the team by them. */
 #pragma once
-
 #include "sets.h"
 
 /* A node of the list of groups: robots inside, robots outside, those next to one inside; links between the first two. */
@@ -47,7 +46,7 @@ typedef struct {
 /* List connected sets that at most `most` links leave, none of them protected; each grows from its lowest robot, and a
    robot next to it is taken in or left out, which costs its links. At most 63 robots. Goes on from `position`: robots begun
    with, depth of the stack (2 robots + 2). Ends after `steps` or `room` sets; returns how many were written. */
-EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most, Branch *stack,
+EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most, Branch stack[],
                              int64_t *position, int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts);
 /* Keep the groups in which blinding at most `most` robots leaves a set below the threshold, and how many it takes.
    `sizes`: of the largest such set inside each set, plus one, or 0. Returns how many are kept. */

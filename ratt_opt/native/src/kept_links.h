@@ -1,9 +1,8 @@
-/* Groups that keep more link weight than their robots' prices. */
+/* Groups with more link weight inside than their robots' prices. */
 #pragma once
-
 #include "sets.h"
 
-/* Groups that keep more link weight than their robots' prices. */
+/* Groups with more link weight inside than their robots' prices. */
 typedef struct {
     int64_t robots, links;
     const int64_t *ends;               /* (links, 2) */
@@ -19,7 +18,7 @@ typedef struct {
     int64_t nodes;
 } KeptLinks;
 
-/* An open search. */
+/* An open search of kept links. */
 typedef struct KeptSearch KeptSearch;
 
 EXPORTED void close_kept_links(KeptSearch *s);

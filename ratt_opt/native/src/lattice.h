@@ -1,6 +1,5 @@
 /* Passes over the values of all sets of elements. */
 #pragma once
-
 #include "sets.h"
 
 /* Lower *low and raise *high to f(S + i) - f(S) over the sets without i of numbers first..last - 1, which are multiples of

@@ -1,6 +1,5 @@
 /* The search by marginal gains: the team in the order in which robots choose, known attacks, and the way down. */
 #pragma once
-
 #include "elements.h"
 
 /* The elements of robots, both in the order in which robots choose. */
@@ -11,14 +10,15 @@ typedef struct {
     const int64_t *seeing;  /* (targets, elements) elements with information of a target, the last first, ended by -1 */
 } Choosers;
 
+/* Attacks whose groups have no blinded robots. */
 typedef struct {
     int64_t attacks, widest;
-    const uint64_t *members; /* (groups) masks of robots, none of them blinded */
+    const uint64_t *members; /* (groups) masks of robots */
     const int64_t *of;       /* (attacks, widest) groups that each leaves, or -1 */
     int64_t *order;          /* (attacks) in which they are tried; those that last led to a dead end come first */
 } Attacks;
 
-/* Where the search is. */
+/* Place of the search. */
 typedef struct {
     int64_t depth, size; /* robots that have chosen; nodes recorded */
     int64_t *chosen;     /* (robots) their elements */
@@ -27,7 +27,7 @@ typedef struct {
     int32_t *record;     /* of each node, in preorder: the attack that makes it a dead end, or BRANCHED */
 } Path;
 
-/* What is known of each target beside the sets of its seers that were asked for last. */
+/* Values and gains of each target beside the last sets of its seers. */
 typedef struct {
     int64_t sets;
     double *value;    /* (targets, sets) what they gain */

@@ -1,6 +1,5 @@
 /* Covariances of outputs. */
 #pragma once
-
 #include "sets.h"
 
 /* Traces (count, targets) of the covariances; matrices (count, targets, d, d), output (targets, q, d), `spare` (d + q, d). */

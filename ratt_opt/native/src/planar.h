@@ -1,9 +1,8 @@
 /* Planar targets: gains of the greedy algorithm, contexts of an element, dominated elements. */
 #pragma once
-
 #include "team.h"
 
-/* What the next choices of the greedy algorithm add; planar matrices [[a, b], [b, c]] as rows of a, of b and of c, so that
+/* Gains of the greedy algorithm. Planar matrices [[a, b], [b, c]] as rows of a, of b and of c, so that
    targets lie side by side. Rows have `width` places: behind the targets come ones that add nothing (trace, log-det). */
 typedef struct {
     int64_t criterion, targets, width;

@@ -109,8 +109,6 @@ void facet_weights(int64_t targets, int64_t rows, const int64_t *first, const do
             }
 }
 
-int64_t layout_of_program(void) { return sizeof(Program); }
-
 void rest_of_vertices(const Program *p, const double *multipliers, double *rest, double *spare) {
     for (int64_t j = 0; j < p->targets; j++) {
         const double *slope = multipliers + j * (3 + p->heavies), *own = slope + 3;

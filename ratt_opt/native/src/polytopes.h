@@ -1,9 +1,8 @@
 /* Outer polytopes of the information of sets in the plane, and underestimators over their vertices. */
 #pragma once
-
 #include "team.h"
 
-/* What an affine underestimator is made of: vertices of each target's polytopes, `light` (V, 3) with the value and the pattern of heavy
+/* Parts of an affine underestimator: vertices of each target's polytopes, `light` (V, 3) with the value and the pattern of heavy
    robots of each; `multipliers` (targets, 3 + heavy): slopes, scores of the heavy robots. */
 typedef struct {
     int64_t targets, robots, heavies, patterns, size;
@@ -28,7 +27,6 @@ EXPORTED void vertex_values(const Team *team, int64_t patterns, const double *st
 /* Sum of the closeness of vertices over each facet that they lie on: weights (targets, rows), zero before. */
 EXPORTED void facet_weights(int64_t targets, int64_t rows, const int64_t *first, const double *closeness, const uint64_t *facets,
                             double *weights);
-EXPORTED int64_t layout_of_program(void);
 /* `rest` (V): the value of each vertex less what the multipliers say; `spare` (patterns). */
 EXPORTED void rest_of_vertices(const Program *p, const double *multipliers, double *rest, double *spare);
 /* The bound of the multipliers, and its smoothed value in *soft; fills `gradient` (targets, 3 + heavies), zero before, and

@@ -1,10 +1,9 @@
 /* Groups of small reduced cost: an exact search, annealing, proofs that there is none. */
 #pragma once
-
 #include "team.h"
 
-/* A search for groups whose reduced cost, unit * links that leave it - duals of its robots + blinding * robots blinded, is less
-   than `limit`, and of which blinding at most n_blinded leaves less than the threshold. Arcs as in `Anneal`. */
+/* A search for groups of small reduced cost: unit * links that leave it - duals of its robots + blinding * robots blinded is less
+   than `limit`, and blinding at most n_blinded of its robots leaves less than the threshold. Arcs as in `Anneal`. */
 typedef struct {
     const Team *team;
     double threshold, level;             /* its level, rounding included */
@@ -37,14 +36,14 @@ typedef struct {
     int64_t *most, *uses;                /* (n_limits) how many of them sense at most; nodes that say so */
 } GroupTree;
 
-/* Of a tree over sets: any `size` of the `count` robots in the search's row of order are worth the threshold with those in `sensing`;
+/* A row of a tree over sets: any `size` of the `count` robots in the search's row of order are worth the threshold with those in `sensing`;
    those before `first` do not sense. */
 typedef struct {
     uint64_t sensing; /* if limits close rows */
     int32_t count, first, size;
 } Row;
 
-/* An open search. */
+/* An open search of groups. */
 typedef struct Search Search;
 
 EXPORTED void close_pricing(Search *s);
@@ -61,6 +60,6 @@ EXPORTED int64_t most_below(Search *s, const uint8_t *group);
 EXPORTED int64_t anneal_column(const Pricing *q, int64_t first, int64_t moves, double hot, double cold, uint64_t *random, int8_t *best);
 /* Write a tree that any `size` robots of those in `among` (robots) are worth the threshold, on from `*depth`, or from its root if
    that is -1: 0 it is finished, 1 paused once so many robots were valued, 2 too large for the arrays, 3 some set is worth less. */
-EXPORTED int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row *rows, int32_t *depth, int64_t size, int64_t effort);
+EXPORTED int grow_sets_tree(Search *s, GroupTree *out, const int8_t *among, Row rows[], int32_t *depth, int64_t size, int64_t effort);
 /* Grow a tree for so many cases: 0 it is finished, 1 paused, 2 too large for the arrays, 3 some group is not closed. */
 EXPORTED int grow_group_tree(Search *s, GroupTree *out, int64_t cases);

@@ -1,6 +1,5 @@
 /* A stream of random numbers. */
 #pragma once
-
 #include <stdint.h>
 
 /* Uniform in [0, 1); the state is not 0. Source: xorshift64*, Vigna, ACM Transactions on Mathematical Software 42 (2016). */

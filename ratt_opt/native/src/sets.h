@@ -1,6 +1,5 @@
 /* Sets of robots as bit masks, and how a function is exported. */
 #pragma once
-
 #include <stdint.h>
 
 #if defined(_WIN32)

@@ -1,16 +1,15 @@
 /* Sets of given sizes that are worth little: searches, exchanges of robots, disjoint sets. */
 #pragma once
-
 #include "team.h"
 
-/* How far the exchanges of one round were looked at, and the best one so far: that robot `leaves` and `enters`; -1 if none.
+/* Progress of a round of exchanges, and the best one so far: that robot `leaves` and `enters`; -1 if none.
    `lowest` is INFINITY before the first. */
 typedef struct {
     int64_t next, leaves, enters;
     double lowest;
 } Scan;
 
-/* Sets of `size` robots that are worth less than `threshold` with what `start` tells, and cost less than `limit`. */
+/* A search of sets of one size: worth less than `threshold` with what `start` tells, and cheaper than `limit`. */
 typedef struct {
     const Team *team;
     double threshold, level, limit; /* its level, rounding included */

@@ -1,6 +1,5 @@
 /* A plan: what its robots tell about the targets, and the value of a set of them. */
 #pragma once
-
 #include <stddef.h>
 
 #include "sets.h"
@@ -8,7 +7,7 @@
 enum { TRACE = 0, LOG_DET = 1, LARGEST = 2 }; /* compiled_code of the criteria */
 enum { LARGEST_DIMENSION = 64 };
 
-/* Symmetric matrices are packed by rows of the lower triangle: entries = d (d + 1) / 2. */
+/* Robots that measure targets. Symmetric matrices are packed by rows of the lower triangle: entries = d (d + 1) / 2. */
 typedef struct {
     int32_t robots, targets, dimension, criterion;
     const double *weights;     /* (targets) */

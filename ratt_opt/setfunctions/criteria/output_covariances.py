@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from ctypes import c_int64, c_void_p
 from math import prod
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked, function
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import FloatArray
 
 __all__ = ["output_covariances", "output_traces"]
@@ -21,22 +23,21 @@ AT_ONCE = 4_000_000
 
 def output_traces(matrices: FloatArray, output: FloatArray) -> FloatArray:
     """``tr(C_j L_j^{-1} C_j')`` of (..., M, d, d) positive definite matrices and outputs (M, q, d): (..., M)."""
-    return _of_each("output_traces", matrices, output, ())
+    return _of_each(loops.output_traces, matrices, output, ())
 
 
 def output_covariances(matrices: FloatArray, output: FloatArray) -> FloatArray:
     """``C_j L_j^{-1} C_j'`` likewise: (..., M, q, q)."""
-    return _of_each("output_covariances", matrices, output, (output.shape[-2],) * 2)
+    return _of_each(loops.output_covariances, matrices, output, (output.shape[-2],) * 2)
 
 
-def _of_each(name: str, matrices: FloatArray, output: FloatArray, shape: tuple[int, ...]) -> FloatArray:
+def _of_each(call: Callable[..., None], matrices: FloatArray, output: FloatArray, shape: tuple[int, ...]) -> FloatArray:
     """Raises ``InputError`` : the shapes of matrices and outputs differ, or an array has another type."""
     targets, q, d = output.shape
     flat = np.ascontiguousarray(matrices).reshape(prod(matrices.shape[:-3]), *matrices.shape[-3:])
     checked("matrices", flat, np.float64, (len(flat), targets, d, d))
     own = checked("output", np.ascontiguousarray(output), np.float64, (targets, q, d))
     found, spare = np.empty((len(flat), targets, *shape)), np.empty((d + q, d))
-    call = function(name, None, *[c_int64] * 4, *[c_void_p] * 4)
     given, where, others = address(flat), address(found), (address(own), address(spare))
     step = max(AT_ONCE // max(targets * d**3, 1), 1)
     for first in range(0, len(flat), step):

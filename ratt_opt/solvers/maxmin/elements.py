@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from ctypes import Structure, c_double, c_int32, c_int64, c_void_p
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.bounds.cuts import mixed_information
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import ElementsRecord
 from ratt_opt.setfunctions.base import IMPROVEMENT
 from ratt_opt.setfunctions.information import triangles
 from ratt_opt.solvers.undominated import dominators, undominated
@@ -95,17 +95,6 @@ class Elements:
         return tuple(sorted(e for k in elements.tolist() for e in self.stands_for[k]))
 
 
-class ElementsRecord(Structure):
-    """``Elements`` of ``native/src/elements.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("elements", "targets", "entries")),
-        *((name, c_int32) for name in ("dimension", "criterion")),
-        *((name, c_void_p) for name in ("weights", "baseline", "prior", "information", "sees")),
-        *((name, c_double) for name in ("relative", "rounding")),
-    ]
-
-
 class PackedElements:
     """Information of elements about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
@@ -134,15 +123,21 @@ class PackedElements:
             raise InputError("dimension", f"must be in [1, {LARGEST_DIMENSION}]", dimension)
         self.count, self.targets, entries = len(information), len(prior), dimension * (dimension + 1) // 2
         self.prior, self.sees = prior, sees
-        self._arrays = (  # the record has their addresses only
-            checked("weights", weights, np.float64, (self.targets,)),
-            checked("baseline", baseline, np.float64, (self.targets,)),
-            checked("prior", prior, np.float64, (self.targets, entries)),
-            checked("information", information, np.float64, (self.count, self.targets, entries)),
-            checked("sees", sees, np.bool_, (self.count, self.targets)),
+        self._arrays = weights, baseline, prior, information, sees  # the record has their addresses only
+        self.record = ElementsRecord(
+            elements=self.count,
+            targets=self.targets,
+            entries=entries,
+            dimension=dimension,
+            criterion=criterion,
+            weights=address(checked("weights", weights, np.float64, (self.targets,))),
+            baseline=address(checked("baseline", baseline, np.float64, (self.targets,))),
+            prior=address(checked("prior", prior, np.float64, (self.targets, entries))),
+            information=address(checked("information", information, np.float64, (self.count, self.targets, entries))),
+            sees=address(checked("sees", sees, np.bool_, (self.count, self.targets))),
+            relative=IMPROVEMENT.relative,
+            rounding=rounding,
         )
-        sizes, improvement = (self.count, self.targets, entries), (IMPROVEMENT.relative, rounding)
-        self.record = ElementsRecord(*sizes, dimension, criterion, *map(address, self._arrays), *improvement)
 
     @classmethod
     def of(cls, objective: InformationObjective, information: FloatArray, sees: BoolArray) -> PackedElements:

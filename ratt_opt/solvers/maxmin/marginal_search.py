@@ -6,12 +6,11 @@ For log-determinants, which are submodular. At one level after the other robots 
 
 from __future__ import annotations
 
-from ctypes import byref, c_double, c_int, c_int64, c_void_p
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import function
+from ratt_opt.native.loops import loops
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.rounding_errors import UNIT
 from ratt_opt.solvers.maxmin.elements import PackedElements, padded
@@ -100,9 +99,8 @@ def dive(
 ) -> Outcome:
     """Search on for some nodes; how that ended. A plan worth more than ``level`` by up to ``slack`` is not found."""
     path.make_room(nodes)
-    call = function("dive_by_marginals", c_int, *[c_void_p] * 4, *[c_double] * 2, *[c_int64] * 2)
-    records = (byref(table.record) for table in (choosers, attacks, gains, path))
-    return Outcome(call(*records, level, slack, nodes, MOST_TRIED))
+    records = choosers.record, attacks.record, gains.record, path.record
+    return Outcome(loops.dive_by_marginals(*records, level, slack, nodes, MOST_TRIED))
 
 
 class MarginalLevelSearch(LevelSearch):

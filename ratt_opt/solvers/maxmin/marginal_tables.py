@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from ctypes import Structure, c_int64, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, check_numbers, checked
-from ratt_opt.solvers.maxmin.elements import ElementsRecord, PackedElements
+from ratt_opt.native.loops import AttacksRecord, ChoosersRecord, GainsRecord, PathRecord
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, IntArray
+    from ratt_opt.solvers.maxmin.elements import PackedElements
 
 __all__ = ["BRANCHED", "MOST_ROBOTS", "Attacks", "Choosers", "Gains", "Path"]
 
@@ -22,12 +22,6 @@ BRANCHED = -1
 """Mark of a node that is divided by the elements of the next robot. Any other number is the attack of a dead end."""
 MOST_ROBOTS = 64
 """Robots that masks hold."""
-
-
-class ChoosersRecord(Structure):
-    """``Choosers`` of ``native/src/marginals.h``; so are the others of that file."""
-
-    _fields_: ClassVar = [("all", ElementsRecord), ("robots", c_int64), ("first", c_void_p), ("seeing", c_void_p)]
 
 
 class Choosers:
@@ -45,8 +39,10 @@ class Choosers:
             raise InputError("sizes", f"must be of at most {MOST_ROBOTS} robots", self.robots)
         if np.any(sizes < 1) or sizes.sum() != elements.count:
             raise InputError("sizes", f"must be positive and sum to {elements.count}", sizes)
-        self._arrays = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64), _seeing(elements.sees)
-        self.record = ChoosersRecord(elements.record, self.robots, *map(address, self._arrays))
+        self._first, self._seeing = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64), _seeing(elements.sees)
+        self.record = ChoosersRecord(
+            all=elements.record, robots=self.robots, first=address(self._first), seeing=address(self._seeing)
+        )
 
 
 def _seeing(sees: BoolArray) -> IntArray:
@@ -56,15 +52,6 @@ def _seeing(sees: BoolArray) -> IntArray:
         elements = np.flatnonzero(own)[::-1]
         row[: len(elements)] = elements
     return seeing
-
-
-class AttacksRecord(Structure):
-    """``Attacks``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("attacks", "widest")),
-        *((name, c_void_p) for name in ("members", "of", "order")),
-    ]
 
 
 class Attacks:
@@ -79,26 +66,15 @@ class Attacks:
 
     def __init__(self, members: NDArray[np.uint64], of: IntArray, order: IntArray) -> None:
         attacks, widest = len(order), np.shape(of)[-1] if np.ndim(of) == 2 else 0
-        self.order, self._arrays = (
-            order,
-            (
-                checked("members", members, np.uint64, (len(members),)),
-                checked("of", of, np.int64, (attacks, widest)),
-                checked("order", order, np.int64, (attacks,), written=True),
-            ),
-        )
+        self.order, self._arrays = order, (members, of)  # the record has their addresses only
+        checked("members", members, np.uint64, (len(members),))
+        checked("of", of, np.int64, (attacks, widest))
+        checked("order", order, np.int64, (attacks,), written=True)
         check_numbers("of", of, -1, len(members))
         check_numbers("order", order, 0, attacks)
-        self.record = AttacksRecord(attacks, widest, *map(address, self._arrays))
-
-
-class PathRecord(Structure):
-    """``Path``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("depth", "size")),
-        *((name, c_void_p) for name in ("chosen", "seers", "version", "record")),
-    ]
+        self.record = AttacksRecord(
+            attacks=attacks, widest=widest, members=address(members), of=address(of), order=address(order)
+        )
 
 
 class Path:
@@ -108,7 +84,14 @@ class Path:
         self.chosen, targets = np.zeros(choosers.robots, np.int64), choosers.elements.targets
         self._seers, self._version = np.zeros(targets, np.uint64), np.zeros(targets, np.int64)
         self._nodes = np.zeros(room, np.int32)
-        self.record = PathRecord(0, 0, *map(address, (self.chosen, self._seers, self._version, self._nodes)))
+        self.record = PathRecord(
+            depth=0,
+            size=0,
+            chosen=address(self.chosen),
+            seers=address(self._seers),
+            version=address(self._version),
+            record=address(self._nodes),
+        )
 
     @property
     def nodes(self) -> NDArray[np.int32]:
@@ -122,26 +105,20 @@ class Path:
         self.record.record = address(self._nodes)
 
 
-class GainsRecord(Structure):
-    """``Gains``."""
-
-    _fields_: ClassVar = [
-        ("sets", c_int64),
-        *((name, c_void_p) for name in ("value", "gain", "since", "version", "seers", "slot")),
-    ]
-
-
 class Gains:
     """Marginals of each target beside the sets of its seers that came last, ``sets`` of them."""
 
     def __init__(self, elements: PackedElements, sets: int) -> None:
         shape = elements.targets, sets
-        self._arrays = (
-            np.zeros(shape),
-            np.zeros((*shape, elements.count)),
-            np.zeros(shape, np.int64),
-            np.full(shape, -1, np.int64),
-            np.zeros(shape, np.uint64),
-            np.zeros(elements.targets, np.int64),
+        self._value, self._gain = np.zeros(shape), np.zeros((*shape, elements.count))
+        self._since, self._version = np.zeros(shape, np.int64), np.full(shape, -1, np.int64)
+        self._seers, self._slot = np.zeros(shape, np.uint64), np.zeros(elements.targets, np.int64)
+        self.record = GainsRecord(
+            sets=sets,
+            value=address(self._value),
+            gain=address(self._gain),
+            since=address(self._since),
+            version=address(self._version),
+            seers=address(self._seers),
+            slot=address(self._slot),
         )
-        self.record = GainsRecord(sets, *map(address, self._arrays))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from ctypes import c_int64, sizeof
 from itertools import combinations
 
 import numpy as np
@@ -11,11 +10,10 @@ from scipy.optimize import approx_fprime, linprog
 
 from ratt_opt.attack.least_sets.outer_polytopes import outer_polytopes
 from ratt_opt.attack.least_sets.sets_of_size import SetFamily
-from ratt_opt.attack.least_sets.smoothed_dual import Multipliers, ProgramRecord
+from ratt_opt.attack.least_sets.smoothed_dual import Multipliers
 from ratt_opt.attack.least_sets.underestimator import _program, affine_underestimator
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget
-from ratt_opt.native.library import function
 from tests.strategies import OBJECTIVES, range_bearing
 
 
@@ -166,7 +164,3 @@ def test_a_restricted_minorant_and_its_child_hold_below_every_set_left(name, see
             value = team.value([*others[list(chosen)], robot][: 4 if inside else -1])
             for underestimator in (restricted, child):
                 assert underestimator.constant + underestimator.scores[list(chosen)].sum() <= value + 1e-9
-
-
-def test_the_record_has_the_layout_that_c_expects():
-    assert function("layout_of_program", c_int64)() == sizeof(ProgramRecord)

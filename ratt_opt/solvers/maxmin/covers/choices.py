@@ -2,38 +2,26 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, byref, c_double, c_int, c_int64, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from ctypes import byref, c_double
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.errors import InputError
-from ratt_opt.native.library import address, checked, function
-from ratt_opt.solvers.maxmin.elements import ElementsRecord, PackedElements
+from ratt_opt.native.library import address, checked
+from ratt_opt.native.loops import ChoicesRecord, loops
+from ratt_opt.solvers.maxmin.elements import PackedElements
 
 if TYPE_CHECKING:
-    from typing import Any
-
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
 
-__all__ = ["MOST_CHOICES", "Choices", "ChoicesRecord"]
+__all__ = ["MOST_CHOICES", "Choices"]
 
 MOST_CHOICES = 64
 """Elements of one robot: a set of them is a mask of 64 bits."""
-
-
-class ChoicesRecord(Structure):
-    """``Choices`` of ``native/src/elements.h``."""
-
-    _fields_: ClassVar = [
-        ("all", ElementsRecord),
-        *((name, c_int64) for name in ("robots", "widest")),
-        *((name, c_void_p) for name in ("owner", "bit", "element", "count", "safe")),
-        ("enough", c_double),
-    ]
 
 
 class Choices:
@@ -66,12 +54,20 @@ class Choices:
         self.masks = np.array([(1 << len(choice)) - 1 for choice in choices], np.uint64)
         self.safe, self.enough = checked("safe", safe, np.bool_, (robots,)), float(enough)
         self.count = np.where(safe, self.enough, 1.0)
-        arrays = self.owner, self.bit, self.element, self.count, self.safe
-        self.record = ChoicesRecord(elements.record, robots, widest, *map(address, arrays), self.enough)
+        self.record = ChoicesRecord(
+            all=elements.record,
+            robots=robots,
+            widest=widest,
+            owner=address(self.owner),
+            place=address(self.bit),
+            element=address(self.element),
+            count=address(self.count),
+            safe=address(self.safe),
+            enough=self.enough,
+        )
         self.strongest = np.zeros((robots, *elements.prior.shape))
         """(N, M, T) no less than what any element of the robot tells about the target."""
-        bound = function("bound_robots", None, POINTER(ChoicesRecord), *[c_void_p] * 2)
-        bound(self.record, address(self.masks), address(self.strongest))
+        loops.bound_robots(self.record, address(self.masks), address(self.strongest))
 
     @classmethod
     def of(cls, problem: Problem) -> Choices:
@@ -94,17 +90,12 @@ class Choices:
         """(E,) which elements masks (N,) hold."""
         return np.asarray(masks[self.owner] >> self.bit.astype(np.uint64) & np.uint64(1), dtype=np.bool_)
 
-    @property
-    def reference(self) -> Any:
-        """The record, as a function of the library takes it."""
-        return byref(self.record)
-
     def group_values(self, members: BoolArray) -> FloatArray:
         """(G, M) what groups, ``members`` (G, N), can be worth for each target."""
         checked("members", members, np.bool_, (len(members), len(self.safe)))
         values = np.zeros((len(members), self.elements.targets))
-        call = function("group_values", None, POINTER(ChoicesRecord), c_void_p, c_int64, *[c_void_p] * 2)
-        call(self.record, address(self.strongest), len(members), address(members), address(values))
+        given = address(self.strongest), len(members), address(members)
+        loops.group_values(self.record, *given, address(values))
         return values
 
     def lose(
@@ -124,10 +115,8 @@ class Choices:
         for name, array in (("values", values), ("noise", noise)):
             checked(name, array, np.float64, (groups, self.elements.targets))
         kept, paid = np.zeros_like(inside), np.zeros(groups)
-        pointers = [c_void_p] * 3, c_double, [c_void_p] * 3
-        call = function("lose_all", c_int, POINTER(ChoicesRecord), c_int64, *pointers[0], pointers[1], *pointers[2])
         given = address(inside), address(price), address(values), level, address(noise)
-        if call(self.record, groups, *given, address(kept), address(paid)):
+        if loops.lose_all(self.record, groups, *given, address(kept), address(paid)):
             raise MemoryError
         return paid, kept
 
@@ -144,7 +133,7 @@ class Choices:
         checked("price", price, np.float64, (count,))
         checked("kept", kept, np.bool_, (count,), written=True)
         sums, paid = np.zeros_like(self.elements.prior), c_double(0.0)
-        call = function("keep_elements", c_int, POINTER(ChoicesRecord), *[c_void_p] * 2, c_double, *[c_void_p] * 3)
-        if call(self.record, address(inside), address(price), level, address(kept), address(sums), byref(paid)):
+        given, places = (address(inside), address(price), level), (address(kept), address(sums), byref(paid))
+        if loops.keep_elements(self.record, *given, *places):
             raise MemoryError
         return paid.value, sums

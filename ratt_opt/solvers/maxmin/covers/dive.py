@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from ctypes import Structure, byref, c_double, c_int, c_int64, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from ctypes import byref, c_int
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, check_numbers, checked, function
+from ratt_opt.native.library import address, check_numbers, checked
+from ratt_opt.native.loops import NodeRecord, NodesRecord, StackRecord, StepRecord, SumsRecord, loops
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 
@@ -22,8 +23,6 @@ __all__ = ["BY_COVER", "BY_SUM", "CoverSums", "Dive", "DiveProof"]
 
 BY_COVER, BY_SUM, TRIED = 0, 1, 2
 """Reason that forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
-NODE = np.dtype([(name, np.int64) for name in ("kind", "subject", "robot", "place", "next")])
-STEP = np.dtype([*((name, np.int64) for name in ("kind", "what", "robot")), ("gone", np.uint64)])
 FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
 """Nodes of a record: it grows, to 160 MB at most."""
 MOST_WAYS = 10
@@ -33,16 +32,6 @@ MOST_TRIED = 60
 """Sums that are looked at: those that were of most use lately."""
 FADING = 0.9
 """Weight of earlier use when a sum is used again."""
-
-
-class StackRecord(Structure):
-    """``Stack`` of ``native/src/covers.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("frame", "count")),
-        *((name, c_void_p) for name in ("start", "allowed", "strongest", "fixed", "first", "steps", "reasons")),
-        *((name, c_void_p) for name in ("since", "touched", "activity")),
-    ]
 
 
 class Stack:
@@ -55,30 +44,30 @@ class Stack:
         n, e = choices.element.shape[0], choices.elements.count
         self.allowed, strongest = np.zeros((n + 1, n), np.uint64), np.zeros((n + 1, *choices.strongest.shape))
         self.allowed[0], strongest[0] = choices.masks, choices.strongest
-        self._arrays = (
-            choices.masks,
-            self.allowed,
-            strongest,
-            np.zeros(n + 1, np.int64),
-            np.zeros(n + 2, np.int64),
-            np.zeros(e + 1, STEP),
-            np.zeros((e + 1, n), np.uint64),
-            np.full(e, -1, np.int64),
-            np.zeros((n + 1, n), np.int64),
-            np.zeros(n),
+        fixed, first, since = np.zeros(n + 1, np.int64), np.zeros(n + 2, np.int64), np.full(e, -1, np.int64)
+        steps, reasons = np.zeros(e + 1, StepRecord), np.zeros((e + 1, n), np.uint64)
+        touched, activity = np.zeros((n + 1, n), np.int64), np.zeros(n)
+        # The record has their addresses only.
+        self._arrays = choices.masks, strongest, fixed, first, since, steps, reasons, touched, activity
+        self.record = StackRecord(
+            frame=0,
+            count=0,
+            start=address(choices.masks),
+            allowed=address(self.allowed),
+            strongest=address(strongest),
+            fixed=address(fixed),
+            first=address(first),
+            steps=address(steps),
+            reasons=address(reasons),
+            since=address(since),
+            touched=address(touched),
+            activity=address(activity),
         )
-        self.record = StackRecord(0, 0, *map(address, self._arrays))
 
     @property
     def frame(self) -> int:
         """The present one."""
         return int(self.record.frame)
-
-
-class NodesRecord(Structure):
-    """``Record`` of ``native/src/covers.h``."""
-
-    _fields_: ClassVar = [("size", c_int64), ("room", c_int64), ("nodes", c_void_p)]
 
 
 class Record:
@@ -88,8 +77,8 @@ class Record:
     """
 
     def __init__(self, room: int) -> None:
-        self._nodes = np.zeros(room, NODE)
-        self.record = NodesRecord(0, room, address(self._nodes))
+        self._nodes = np.zeros(room, NodeRecord)
+        self.record = NodesRecord(size=0, room=room, nodes=address(self._nodes))
 
     @property
     def size(self) -> int:
@@ -105,13 +94,7 @@ class Record:
         """Grow as long as there is no room for ``more`` nodes and one."""
         while self.size + more >= len(self._nodes):
             self._nodes = np.concatenate([self._nodes, np.zeros_like(self._nodes)])
-        self.record = NodesRecord(self.size, len(self._nodes), address(self._nodes))
-
-
-class SumsRecord(Structure):
-    """``Sums`` of ``native/src/covers.h``."""
-
-    _fields_: ClassVar = [("looked_at", c_int64), *((name, c_void_p) for name in ("terms", "tried", "used"))]
+        self.record = NodesRecord(size=self.size, room=len(self._nodes), nodes=address(self._nodes))
 
 
 class Sums:
@@ -125,13 +108,12 @@ class Sums:
     """
 
     def __init__(self, elements: int, terms: FloatArray, tried: IntArray, used: FloatArray) -> None:
-        self._arrays = (
-            checked("terms", terms, np.float64, (len(used), elements)),
-            checked("tried", tried, np.int64, (len(tried),)),
-            checked("used", used, np.float64, (len(used),), written=True),
-        )
+        checked("terms", terms, np.float64, (len(used), elements))
+        checked("tried", tried, np.int64, (len(tried),))
+        checked("used", used, np.float64, (len(used),), written=True)
         check_numbers("tried", tried, 0, len(used))
-        self.terms, self.record = terms, SumsRecord(len(tried), *map(address, self._arrays))
+        self.terms, self._tried, self._used = terms, tried, used
+        self.record = SumsRecord(looked_at=len(tried), terms=address(terms), tried=address(tried), used=address(used))
 
 
 class CoverSums:
@@ -180,10 +162,9 @@ class Dive:
         pool, ways, sums = self._separation.pool, self._separation.ways(), self._sums.rows()
         pool.make_room(ways.widest)
         self.record.make_room(self._choices.elements.count + 1)
-        tables = self._choices, ways, pool, sums, self._stack, self.record
-        call = function("dive_by_covers", c_int, *[c_void_p] * 6, c_double, *[c_int64] * 2, c_void_p)
         outcome = c_int(Outcome.SPENT)
-        if call(*(byref(table.record) for table in tables), level, nodes, MOST_WAYS, byref(outcome)):
+        tables = self._choices.record, ways.record, pool.record, sums.record, self._stack.record, self.record.record
+        if loops.dive_by_covers(*tables, level, nodes, MOST_WAYS, byref(outcome)):
             raise MemoryError
         return Outcome(outcome.value)
 

@@ -15,13 +15,13 @@ Source: combinatorial Benders cuts (Codato and Fischetti 2006), lifted.
 
 from __future__ import annotations
 
-from ctypes import Structure, c_int64, c_void_p
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.bounds.cuts import ROUNDING, tangent_cut
 from ratt_opt.native.library import address
+from ratt_opt.native.loops import CoversRecord
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -53,15 +53,6 @@ def _kept_bound(problem: Problem, group: list[int], kept: BoolArray, point: Floa
     return cut.constant + total + ROUNDING * (abs(cut.constant) + total)
 
 
-class CoversRecord(Structure):
-    """``Covers`` of ``native/src/covers.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("size", "room", "groups")),
-        *((name, c_void_p) for name in ("left_out", "partition", "sums", "level")),
-    ]
-
-
 class CoverPool:
     """Covers over the elements of one problem, in arrays that grow: compiled loops read them and add to them.
 
@@ -83,7 +74,15 @@ class CoverPool:
         self.partition, self.level = np.zeros(room, np.int64), np.zeros(room)
         self.sums = np.zeros((room, groups, *self._choices.elements.prior.shape))
         self._arrays = self.masks, self.partition, self.sums, self.level
-        self.record = CoversRecord(0, room, groups, *map(address, self._arrays))
+        self.record = CoversRecord(
+            size=0,
+            room=room,
+            groups=groups,
+            left_out=address(self.masks),
+            partition=address(self.partition),
+            sums=address(self.sums),
+            level=address(self.level),
+        )
 
     def __len__(self) -> int:
         return int(self.record.size)

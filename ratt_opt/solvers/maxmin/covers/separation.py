@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from ctypes import Structure, c_int64, c_void_p
 from itertools import islice
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from ratt_opt.graph.communication import robots_of
 from ratt_opt.graph.connected_partitions import finest_partitions
 from ratt_opt.graph.outcomes import LARGEST_ENUMERATION
 from ratt_opt.native.library import address, check_numbers, checked
+from ratt_opt.native.loops import WaysRecord
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import from_triangles
 from ratt_opt.solvers.maxmin.covers.choices import Choices
@@ -40,15 +40,6 @@ NEGLIGIBLE = 1e-6
 """Violations that count as none."""
 
 
-class WaysRecord(Structure):
-    """``Ways`` of ``native/src/covers.h``."""
-
-    _fields_: ClassVar = [
-        *((name, c_int64) for name in ("groups", "partitions", "widest")),
-        *((name, c_void_p) for name in ("members", "inside", "of", "order")),
-    ]
-
-
 class Ways:
     """Partitions ``of`` (P, S) of groups, padded by -1, in the ``order`` (P,) in which they are tried; it changes.
 
@@ -62,16 +53,23 @@ class Ways:
     def __init__(self, choices: Choices, members: BoolArray, inside: BoolArray, of: IntArray, order: IntArray) -> None:
         groups, partitions = len(members), len(order)
         widest = np.shape(of)[-1] if np.ndim(of) == 2 else 0
-        self._arrays = (
-            checked("members", members, np.bool_, (groups, len(choices.safe))),
-            checked("inside", inside, np.bool_, (groups, choices.elements.count)),
-            checked("of", of, np.int64, (partitions, widest)),
-            checked("order", order, np.int64, (partitions,), written=True),
-        )
+        self._arrays = members, inside, of, order  # the record has their addresses only
+        checked("members", members, np.bool_, (groups, len(choices.safe)))
+        checked("inside", inside, np.bool_, (groups, choices.elements.count))
+        checked("of", of, np.int64, (partitions, widest))
+        checked("order", order, np.int64, (partitions,), written=True)
         check_numbers("of", of, -1, groups)
         check_numbers("order", order, 0, partitions)
         self.widest = widest
-        self.record = WaysRecord(groups, partitions, widest, *map(address, self._arrays))
+        self.record = WaysRecord(
+            groups=groups,
+            partitions=partitions,
+            widest=widest,
+            members=address(members),
+            inside=address(inside),
+            of=address(of),
+            order=address(order),
+        )
 
 
 class Partitions:

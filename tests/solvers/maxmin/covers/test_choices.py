@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 from itertools import product
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -11,13 +10,12 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError
-from ratt_opt.native.library import function
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.solvers.maxmin import marginal_tables
-from ratt_opt.solvers.maxmin.covers.choices import Choices, ChoicesRecord
-from ratt_opt.solvers.maxmin.covers.dive import NODE, STEP, CoverSums, Dive, NodesRecord, StackRecord, Sums, SumsRecord
-from ratt_opt.solvers.maxmin.covers.pool import CoverPool, CoversRecord
-from ratt_opt.solvers.maxmin.covers.separation import Ways, WaysRecord
+from ratt_opt.solvers.maxmin.covers.choices import Choices
+from ratt_opt.solvers.maxmin.covers.dive import CoverSums, Dive, Sums
+from ratt_opt.solvers.maxmin.covers.pool import CoverPool
+from ratt_opt.solvers.maxmin.covers.separation import Ways
 from ratt_opt.solvers.maxmin.elements import PackedElements
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.marginal_search import dive
@@ -252,21 +250,6 @@ def test_numbers_that_are_not_there_are_refused():
     for dimension in (0, 65):
         with pytest.raises(InputError):
             packed_elements(3, dimension=dimension)
-
-
-def test_records_have_the_layout_that_c_expects():
-    layout, sizes = function("layout_of_searches", None, ctypes.c_void_p), np.zeros(12, np.int64)
-    layout(sizes.ctypes.data)
-    made: list[Any] = [ctypes.sizeof(record) for record in (ChoicesRecord, WaysRecord, CoversRecord, SumsRecord)]
-    made += [
-        STEP.itemsize,
-        ctypes.sizeof(StackRecord),
-        NODE.itemsize,
-        ctypes.sizeof(NodesRecord),
-    ]
-    names = "Choosers", "Attacks", "Path", "Gains"
-    made += [ctypes.sizeof(getattr(marginal_tables, f"{name}Record")) for name in names]
-    assert sizes.tolist() == made
 
 
 @pytest.mark.parametrize("seed", range(10))
