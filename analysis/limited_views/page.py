@@ -1,7 +1,7 @@
-"""The page of limited views, made from the rows of the studies: ``python -m analysis.limited_views.page DIR``.
+"""The tables of limited views, made from the rows of the studies: ``python -m analysis.limited_views.page DIR``.
 
 ``python -m analysis.limited_views --trials 60 --out DIR`` runs the studies and writes the same page to
-``DIR/limited_views.md``. Every number and every verdict on it comes from the rows.
+``DIR/limited_views_tables.md``. Every number and every verdict on it comes from the rows.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 
 __all__ = ["page", "write_page"]
 
-OPENING = """# Where robust planning pays: limited views
+OPENING = """# Limited views: tables
+
+[Is it worth it?](limited_views.md) says in one figure what these tables say in numbers.
 
 Six robots with cameras that turn among eight headings, drive at 0 or 2 m/s and see only a part of the area; slow
 targets in a square of 60 m; an adversary who blinds two robots and cuts four links (`limited_view_scenario`). Each
@@ -40,7 +42,7 @@ commands fly everything, 60 trials of the main cases, 20 of the varied ones, and
 ```bash
 python -m analysis.limited_views --trials 20 --only limited_views_varied --out results
 python -m analysis.limited_views --trials 60 --only limited_views_main limited_views_one_step --out results
-python -m analysis.limited_views.page results > docs/researchers/limited_views.md
+python -m analysis.limited_views.page results > docs/researchers/limited_views_tables.md
 ```
 
 Every trial draws another team, other targets and other noise, and all planners fly it: trials share nothing, and
@@ -74,15 +76,14 @@ def page(folder: Path) -> str:
     if steps := _rows(folder, ONE_STEP):
         parts += ["\n".join(_one_step(steps))]
     if flown:
-        parts += ["\n".join(_summary(flown))]
         parts += ["\n".join(_table(flown, *table)) for table in TABLES]
     return "\n".join(parts)
 
 
 def write_page(folder: Path) -> None:
-    """Write ``limited_views.md`` into the folder of the results, and print it."""
+    """Write ``limited_views_tables.md`` into the folder of the results, and print it."""
     text = page(folder)
-    write_atomically(folder / "limited_views.md", lambda file: file.write_text(text, encoding="utf-8"))
+    write_atomically(folder / "limited_views_tables.md", lambda file: file.write_text(text, encoding="utf-8"))
     print(text, end="")
 
 
@@ -131,28 +132,6 @@ def _one_step(rows: Sequence[Row]) -> Iterator[str]:
         told = " | ".join(f"{share:.3f}" for share in shares)
         yield f"| {name} | {len(kept)} | {told} | {gain.show(100)} % | {often:.0%} | {undecided} |"
     yield ""
-
-
-def _summary(flown: Mapping[Study, Sequence[Row]]) -> Iterator[str]:
-    """Sentences that the intervals speak."""
-    yield "## What the missions say\n"
-    rows = [row for study in flown for row in flown[study]]
-    for attacker, words in (("worst", "exact attacks"), ("random", "random attacks"), ("none", "no attack")):
-        for metric, measured in (("rmse", "error"), ("largest", "largest error"), ("unseen", "time unseen")):
-            for planner in _compared(rows):
-                changes = {name: _change(kept, planner, attacker, metric) for name, kept in _cases(rows)}
-                yield f"- **{NAMES.get(planner, planner)}, {words}, {measured}**: {_sentence(changes)}"
-    yield ""
-
-
-def _sentence(changes: Mapping[str, Estimate]) -> str:
-    found: dict[Outcome, list[str]] = {kind: [] for kind in Outcome}
-    for name, change in changes.items():
-        found[outcome(change)].append(f"{name} ({100 * change.mean:+.0f} %)")
-    unseen = len(found[Outcome.UNSEEN])
-    parts = [f"{kind.value} at {'; '.join(found[kind])}" for kind in (Outcome.PAYS, Outcome.COSTS) if found[kind]]
-    parts += [f"{Outcome.UNSEEN.value} in {unseen} of {len(changes)} cases"] if unseen else []
-    return ". ".join(part[0].upper() + part[1:] for part in parts) + "."
 
 
 def _compared(rows: Sequence[Row]) -> list[str]:

@@ -1,4 +1,4 @@
-"""Is it worth it? One figure and three sentences: ``python -m analysis.limited_views.worth --trials 40 --out DIR``.
+"""Is it worth it? One figure and three sentences: ``python -m analysis.limited_views.worth --trials 24 --out DIR``.
 
 Error under the worst attack against that of greedy plans, over the field of view and the network. The command writes
 ``limited_views.md`` and ``limited_views.png`` into the folder of the results; every number comes from the rows.
@@ -149,4 +149,4 @@ def write_page(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main("Is it worth it?", [Entry(STUDY)], trials=40, after=write_page))
+    sys.exit(main("Is it worth it?", [Entry(STUDY)], trials=24, after=write_page))
