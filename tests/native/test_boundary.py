@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from analysis.boundary import TARGET, generated, read_headers
-from ratt_opt.native import loops as declared
+from ratt_opt.native import loops as side
 from ratt_opt.native.loops import ColumnsRecord, DualsRecord, loops
 from ratt_opt.native.sources import SOURCES, TO_COMPILE
 
-RECORDS = {name: kind for name, kind in vars(declared).items() if name.endswith("Record")}
+RECORDS = {name: kind for name, kind in vars(side).items() if name.endswith("Record")}
 CHANGES = {
     "two fields change places": ("annealing", "double hot, cold;", "double cold, hot;"),
     "two lines change places": (
@@ -56,7 +56,7 @@ def test_a_record_without_a_comment_is_named() -> None:
 
 def test_functions_are_exported_in_headers_only_and_all_are_in_the_library() -> None:
     assert not [source.name for source in TO_COMPILE if "EXPORTED" in source.read_text(encoding="utf-8")]
-    names = [name for name in vars(declared.Loops) if not name.startswith("_")]
+    names = [name for name in vars(side.Loops) if not name.startswith("_")]
     assert len(names) == sum(len(re.findall("^EXPORTED", text, re.MULTILINE)) for text in read_headers().values())
     for name in names:
         assert getattr(loops, name).argtypes is not None
