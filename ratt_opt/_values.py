@@ -13,7 +13,7 @@ import numpy as np
 from ratt_opt._rounding import named_text
 from ratt_opt._validation import readonly
 
-__all__ = ["ByValue", "Shown", "counted", "plain", "shown"]
+__all__ = ["ByValue", "ReprMixin", "counted", "plain", "shown"]
 
 MOST_SHOWN = 12
 """Entries of an array that a ``repr`` shows; the rest is counted."""
@@ -78,7 +78,7 @@ def shown(value: Any) -> str:
     return f"[{first}{more}]"
 
 
-class Shown:
+class ReprMixin:
     """Base of records that notebooks show as a table of their fields, and that become plain data."""
 
     __slots__ = ()
@@ -99,7 +99,7 @@ class Shown:
 
 def plain(value: Any) -> Any:
     """Return a field's value as plain data, sets in order and infinities or NaN as ``None``."""
-    if isinstance(value, Shown):
+    if isinstance(value, ReprMixin):
         return value.to_dict()
     if isinstance(value, Enum):
         return value.value

@@ -11,7 +11,7 @@ import networkx as nx
 import numpy as np
 
 from ratt_opt._validation import IntArray, check_distinct, check_integer, check_link, integer_array, readonly
-from ratt_opt._values import ByValue, Shown
+from ratt_opt._values import ByValue, ReprMixin
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
@@ -28,7 +28,7 @@ __all__ = ["Attack", "Plan", "Problem"]
 
 
 @dataclass(frozen=True, slots=True)
-class Attack(Shown):
+class Attack(ReprMixin):
     """Robots whose sensor is blinded, and links ``(i, j)``, ``i < j``, that are cut."""
 
     sensing: frozenset[int] = frozenset()
@@ -51,7 +51,7 @@ def _is_link(link: tuple[int, int]) -> bool:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Plan(ByValue, Shown):
+class Plan(ByValue, ReprMixin):
     """One element per robot; two plans are equal when all their fields are. Iterating gives the elements as ``int``.
 
     ``elements`` : (N,) flat element indices, robot by robot.
@@ -216,7 +216,7 @@ class Problem:
         telling = {i for i, choice in enumerate(self.choices) if information[choice].any()}
         return len(telling) <= self.alpha_s and not telling & self.protected_robots
 
-    def tells_anything(self, plan: IntArray, attack: Attack) -> bool:
+    def has_information(self, plan: IntArray, attack: Attack) -> bool:
         """Tell whether a robot that is not blinded has any information under this plan."""
         seeing = [i for i in range(self.n_robots) if i not in attack.sensing]
         f = self.objective

@@ -20,7 +20,7 @@ def worst_value(problem, plan):
 def attains(problem, plan, result):
     """Whether the result's upper end is what its attack leaves; 0 is exact where no robot tells anything."""
     value = attained(problem, plan, result)
-    is_nothing = value == 0.0 and not problem.tells_anything(problem.check_plan(plan), result.attack)
+    is_nothing = value == 0.0 and not problem.has_information(problem.check_plan(plan), result.attack)
     return result.upper == (0.0 if is_nothing else problem.outward(0.0, value)[1])
 
 

@@ -32,13 +32,13 @@ HEAD = (
 
 def measured_without(name: str, part: str, case: str, turn: int, seconds: float) -> dict[str, Any]:
     """A row of the corpus without one part of the engine; loads the package, in a worker."""
-    from analysis.golden.corpus import case_called
+    from analysis.golden.corpus import get_case
     from analysis.golden.measure import measured, warm
     from analysis.golden.switches import without
 
     warm()
     with without(name):
-        row = measured(replace(case_called(part, case), seconds=seconds, nodes=None))
+        row = measured(replace(get_case(part, case), seconds=seconds, nodes=None))
     return {"without": name, "turn": turn} | row
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from ratt_opt import Problem
 
-__all__ = ["CRITERIA", "PARTS", "Case", "case_called", "cases"]
+__all__ = ["CRITERIA", "PARTS", "Case", "cases", "get_case"]
 
 FAMILIES = tuple(NETWORK_FAMILIES)
 PAPER = {robots: SETTINGS[robots] for robots in (10, 20, 30, 40, 60)}
@@ -158,6 +158,6 @@ def cases(parts: list[str] | None = None) -> list[Case]:
     return [case for part in parts or PARTS for case in PARTS[part]()]
 
 
-def case_called(part: str, name: str) -> Case:
+def get_case(part: str, name: str) -> Case:
     """The case of that name."""
     return next(case for case in PARTS[part]() if case.name == name)

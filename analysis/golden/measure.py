@@ -13,7 +13,7 @@ import numpy as np
 
 import ratt_opt as ro
 from analysis.benchmarks.networks import warm_up
-from analysis.golden.corpus import CRITERIA, case_called
+from analysis.golden.corpus import CRITERIA, get_case
 from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ WARM = 40
 def measured_by_name(part: str, name: str) -> dict[str, Any]:
     """A row of the corpus, for a worker that was told its name; the first call loads modules."""
     warm()
-    return measured(case_called(part, name))
+    return measured(get_case(part, name))
 
 
 def measured(case: Case) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from analysis.limited_views.flights import PLANNERS, case_of, scenario_of
 from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.missions.players.planners import elements_of, planned_with, planner_called
+from ratt_opt.missions.players.planners import elements_of, get_planner, planned_with
 from ratt_opt.scenario.planner_world import scenario_world
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
 from ratt_opt.studies.command import Entry
@@ -28,7 +28,7 @@ def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:
     world = scenario_world(scenario, problem)
     row: dict[str, Cell] = {}
     for planner, chosen in study.named_planners.items():
-        plan = elements_of(planned_with(planner_called(chosen), problem, world), problem)
+        plan = elements_of(planned_with(get_planner(chosen), problem, world), problem)
         row[f"{planner}/worst/value"] = worst_case_attack(problem, plan).lower
     best = solve_maxmin(problem, gap=GAP, max_nodes=NODES)
     return row | {"optimum/lower": best.lower, "optimum/upper": best.upper, "optimum/stop": best.stop.value}

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.budget import Budget
 from ratt_opt.worst_ratio.class_rows import NonDecreasing
-from ratt_opt.worst_ratio.program import ClaimedOptimum, RatioProgram, Row, proved_bound, rational_points
+from ratt_opt.worst_ratio.program import ClaimedOptimum, Inequality, RatioProgram, proved_bound, rational_points
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -95,9 +95,9 @@ class _Programs:
         column = self.rows.column
         self.program = RatioProgram(self.rows.n_columns)
         self.program.add(self.rows.first_rows())
-        self.program.add(Row({column(a): Fraction(1), column(b): Fraction(-1)}) for a, b in compared)
-        self.program.add(Row({column(mask): Fraction(1)}, Fraction(1)) for mask in kept)
-        hit = [Row({0: Fraction(1), column(mask): Fraction(-1)}) for mask in self.left.values()]
+        self.program.add(Inequality({column(a): Fraction(1), column(b): Fraction(-1)}) for a, b in compared)
+        self.program.add(Inequality({column(mask): Fraction(1)}, Fraction(1)) for mask in kept)
+        hit = [Inequality({0: Fraction(1), column(mask): Fraction(-1)}) for mask in self.left.values()]
         self.hit = dict(zip(self.left, self.program.add(hit), strict=True))
 
     def solve(self, groups: Sequence[tuple[int, ...]]) -> ClaimedOptimum | None:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.errors import ProofError
-from ratt_opt.worst_ratio.program import RatioProgram, Row, rational_points
+from ratt_opt.worst_ratio.program import Inequality, RatioProgram, rational_points
 from ratt_opt.worst_ratio.search import skeleton
 from ratt_opt.worst_ratio.witness import RatioQuestion, RatioWitness, replay, scaled_values
 
@@ -74,7 +74,7 @@ def _items(n: int, bait: int) -> Iterator[Item]:
     yield from (together | 1 << v | 1 << w for v, w in combinations(left, 2))
 
 
-def _rows(question: RatioQuestion, items: Sequence[Item]) -> Iterator[Row]:
+def _rows(question: RatioQuestion, items: Sequence[Item]) -> Iterator[Inequality]:
     """Curvature, RATT's choices, what is left once the first greedy robots are blinded, the other plan's sets."""
     n, bait, kept = question.n_robots, question.alpha_s, 1 - question.curvature
 
@@ -82,13 +82,13 @@ def _rows(question: RatioQuestion, items: Sequence[Item]) -> Iterator[Row]:
         return {1 + i: Fraction(1) for i, item in enumerate(items) if item & mask}
 
     for e in range(2 * n):
-        yield Row(_difference({1 + items.index(1 << e): Fraction(1)}, f(1 << e), kept))
+        yield Inequality(_difference({1 + items.index(1 << e): Fraction(1)}, f(1 << e), kept))
     for larger, smaller in skeleton(n, bait, 0, bait).comparisons:
-        yield Row(_difference(f(larger), f(smaller)))
+        yield Inequality(_difference(f(larger), f(smaller)))
     left = sum(1 << i for i in range(n) if not bait <= i < 2 * bait)
-    yield Row(_difference({0: Fraction(1)}, f(left)))
+    yield Inequality(_difference({0: Fraction(1)}, f(left)))
     for group in combinations(range(n), n - bait):
-        yield Row(f(sum(1 << n + i for i in group)), Fraction(1))
+        yield Inequality(f(sum(1 << n + i for i in group)), Fraction(1))
 
 
 def _difference(

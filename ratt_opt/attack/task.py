@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from ratt_opt._rounding import down, up
-from ratt_opt._values import Shown, counted, plain
+from ratt_opt._values import ReprMixin, counted, plain
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
@@ -70,7 +70,7 @@ class PlanValues(SetFunction):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StageRecord(Shown):
+class StageRecord(ReprMixin):
     """Record of one stage of an attack: seconds, nodes, and the bracket before and after [unit of the objective]."""
 
     name: str
@@ -88,7 +88,7 @@ class StageRecord(Shown):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AttackResult(Shown):
+class AttackResult(ReprMixin):
     """Claim: ``lower <= min over attacks of the team value <= upper`` [unit of the objective].
 
     ``attack`` leaves ``upper``, up to the rounding of its value. ``lower`` is
@@ -124,7 +124,7 @@ def outward(problem: Problem, plan: IntArray, found: AttackResult) -> AttackResu
     """
     lower, upper = problem.outward(found.lower, found.upper)
     if found.upper == 0.0 and (error := problem.evaluation_error) > 0:
-        upper = float(np.nextafter(error, np.inf)) if problem.tells_anything(plan, found.attack) else 0.0
+        upper = float(np.nextafter(error, np.inf)) if problem.has_information(plan, found.attack) else 0.0
     return replace(found, lower=lower, upper=upper)
 
 

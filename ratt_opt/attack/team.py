@@ -105,7 +105,7 @@ class Team:
     @property
     def is_by_axis(self) -> bool:
         """Tell whether one axis of one target decides the value of a set (planar states)."""
-        return self.is_planar and self.objective.states("planar_levels")
+        return self.is_planar and self.objective.overrides("planar_levels")
 
     @property
     def whole_value(self) -> float:

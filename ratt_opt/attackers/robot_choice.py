@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt._validation import check_integer
-from ratt_opt._values import Shown
+from ratt_opt._values import ReprMixin
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget, Stop, interruptible
 from ratt_opt.running.progress import Step
@@ -27,7 +27,7 @@ __all__ = ["BestRobots", "robots_to_protect"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class BestRobots(Shown):
+class BestRobots(ReprMixin):
     """Claim: ``lower <= worst case of the plan with the best k robots protected <= upper`` [unit of the objective].
 
     ``robots`` : at most k, ascending; with them the worst case is ``lower`` at least. ``before`` : the worst attack on

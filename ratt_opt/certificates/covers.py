@@ -20,7 +20,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import group_tree, sets_proof
 from ratt_opt.certificates.listed_columns import LinkDuals, duals_of_all_groups
 from ratt_opt.certificates.plan_sets import NotClosedError
-from ratt_opt.certificates.verifier.duals import Listed
+from ratt_opt.certificates.verifier.duals import ListedGroup
 from ratt_opt.certificates.verifier.work import limited, seconds_left, tick
 from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.communication import robots_of
@@ -139,15 +139,15 @@ def _with_limits(sets: PlanSets, question: Question, limits: list[Limit], max_no
         limits = list(proofs)
 
 
-def _listed(threat: Threat, question: Question, robots: int, need: int) -> Listed:
+def _listed(threat: Threat, question: Question, robots: int, need: int) -> ListedGroup:
     inside = [robots >> i & 1 for i in range(threat.graph.n_robots)]
     links = sum(inside[i] != inside[j] for i, j in threat.graph.links)
     need = max(need, 0)
     duals = sum(int(dual) for dual, is_in in zip(question.duals, inside, strict=True) if is_in)
-    return Listed(robots, question.unit * links + question.blinding * need - duals, need, links)
+    return ListedGroup(robots, question.unit * links + question.blinding * need - duals, need, links)
 
 
-def _partition(groups: list[Listed], threat: Threat, slack: int) -> list[int]:
+def _partition(groups: list[ListedGroup], threat: Threat, slack: int) -> list[int]:
     """The tree that shows that groups, as a verifier lists them, do not partition the team.
 
     Raises
@@ -155,7 +155,7 @@ def _partition(groups: list[Listed], threat: Threat, slack: int) -> list[int]:
     NotClosedError : they do, or the tree is too large.
     """
     alpha_c, most, robots = threat.alpha_c, threat.n_blinded, threat.graph.n_robots
-    listed: dict[int, Listed] = {}
+    listed: dict[int, ListedGroup] = {}
     for group in groups:
         known = listed.get(group.robots)
         fits = group.cost >= 0 and _fits(group, slack, most, alpha_c)
@@ -180,5 +180,5 @@ def _partition(groups: list[Listed], threat: Threat, slack: int) -> list[int]:
     return tree
 
 
-def _fits(group: Listed, cost: int, blinded: int, links: int) -> bool:
+def _fits(group: ListedGroup, cost: int, blinded: int, links: int) -> bool:
     return group.cost <= cost and group.need <= blinded and group.links <= links

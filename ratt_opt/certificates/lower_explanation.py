@@ -16,7 +16,7 @@ from ratt_opt.certificates.verifier.worth import Worth
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from ratt_opt.certificates.verifier.cases import Case
+    from ratt_opt.certificates.verifier.cases import GroupCase
     from ratt_opt.certificates.verifier.statement import Statement
     from ratt_opt.certificates.verifier.worth import Known
 
@@ -118,7 +118,7 @@ class LowerStory:
         most = f"2 * {duals.link} * {self.about.alpha_c} + {duals.blinded} * {self.cases.blinded}"
         return f"{most} - {sum(duals.robot)} = {duals.slack}"
 
-    def _tree(self, nodes: list[Any], root: Case, *, of_sets: bool = False) -> list[str]:
+    def _tree(self, nodes: list[Any], root: GroupCase, *, of_sets: bool = False) -> list[str]:
         lines: list[str] = []
         waiting = [(1, "", root)]
         for node in nodes[:MOST_LINES]:
@@ -140,13 +140,13 @@ class LowerStory:
             lines.append(f"  ... and {len(nodes) - MOST_LINES:,} nodes more")
         return lines
 
-    def _limit(self, number: object, case: Case, narrowed: Case) -> str:
+    def _limit(self, number: object, case: GroupCase, narrowed: GroupCase) -> str:
         assert isinstance(number, int)
         robots, most = self.cases.limits[number]
         blinded = f", so at least {narrowed.low} are blinded" if narrowed.low > max(case.low, 0) else ""
         return f"by limit {number} at most {most} of robots {listing(robots_of(robots))} sense in it{blinded}"
 
-    def _leaf(self, name: str, number: object, case: Case, *, of_sets: bool) -> str:
+    def _leaf(self, name: str, number: object, case: GroupCase, *, of_sets: bool) -> str:
         if name == "worth":
             worth = self._number(case.known)
             return f"robots {listing(robots_of(case.sensing))} are worth {worth or 'at least the claim'}"
@@ -163,7 +163,7 @@ class LowerStory:
             return f"this is the group of robots {listing(robots_of(case.inside))}; it is listed"
         return f"such a group costs more than the largest one may, by bound {number}"
 
-    def _copies(self, case: Case) -> str:
+    def _copies(self, case: GroupCase) -> str:
         """The average over copies, with the worth of each robot's copies."""
         among, count = case.may_sense, case.least - case.sensing.bit_count()
         if count <= 0:
@@ -199,7 +199,7 @@ class LowerStory:
             found = self.worth.value(known, BITS)
         return int(found.p) / int(found.q) if isinstance(found, fmpq) else float(found)
 
-    def _no_set(self, case: Case) -> str:
+    def _no_set(self, case: GroupCase) -> str:
         """Say why a set of the case need not be looked at."""
         can = case.sensing | case.may_sense
         if is_short(case):
@@ -207,7 +207,7 @@ class LowerStory:
             return f"there is no such set: {case.least} must sense, and only robots {left} can"
         return f"{case.least} that sense are more than a group below the claim has ({case.most} at most)"
 
-    def _no_group(self, case: Case) -> str:
+    def _no_group(self, case: GroupCase) -> str:
         """Say why no attack within the budgets leaves a group of the case."""
         inside, outside = case.inside, case.outside
         possible = case.everyone & ~outside

@@ -33,7 +33,7 @@ def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
     covers = sorted(
         {k for node in proof.tree if isinstance(node, CoverLeaf) for k, _ in _weighed(node.covers, node.weights)}
     )
-    pool = _Pool(problem)
+    pool = _StatedParts(problem)
     writer = _Nodes(
         pool,
         proof,
@@ -51,7 +51,7 @@ def _weighed(numbers: tuple[int, ...], weights: tuple[float, ...]) -> list[tuple
     return [(k, float(w)) for k, w in zip(numbers, weights, strict=True) if w > 0]
 
 
-class _Pool:
+class _StatedParts:
     """Attacks and Fenchel points, each stated once and counted as they are met."""
 
     def __init__(self, problem: Problem) -> None:
@@ -99,7 +99,7 @@ class _Pool:
 class _Nodes:
     """Nodes as the record has them, in order; ``cuts``, ``covers`` : the numbers there of those that the proof has."""
 
-    def __init__(self, pool: _Pool, proof: UpperProof, *, cuts: dict[int, int], covers: dict[int, int]) -> None:
+    def __init__(self, pool: _StatedParts, proof: UpperProof, *, cuts: dict[int, int], covers: dict[int, int]) -> None:
         self._pool, self._proof, self._cuts, self._covers = pool, proof, cuts, covers
         self._parts: dict[int, list[list[int]]] = {}
 

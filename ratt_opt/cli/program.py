@@ -41,7 +41,7 @@ class _Command(TyperCommand):
         return _delivered(super().get_help_option(ctx))
 
 
-class _Group(TyperGroup):
+class _CommandGroup(TyperGroup):
     def get_help_option(self, ctx: Any) -> Any:
         return _delivered(super().get_help_option(ctx))
 
@@ -60,7 +60,7 @@ def _delivered(option: Any) -> Any:
 
 app = typer.Typer(
     name="ratt-opt",
-    cls=_Group,
+    cls=_CommandGroup,
     help="Plan robot teams that keep tracking targets under attack, and prove how good each plan is.",
     add_completion=False,
     pretty_exceptions_enable=False,

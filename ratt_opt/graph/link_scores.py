@@ -29,7 +29,16 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import CommunicationGraph
 
-__all__ = ["SHARES", "LinkScores", "MostScores", "RelaxedScores", "Top", "link_scores", "most_scores", "scoring_group"]
+__all__ = [
+    "SHARES",
+    "LinkScores",
+    "MostScores",
+    "RelaxedScores",
+    "SphereMaximum",
+    "link_scores",
+    "most_scores",
+    "scoring_group",
+]
 
 SHARES = (1.0, 0.5, 0.0)
 """Shares ``w``: links inside, links cut, and one between, whose scores are multiples of a half too."""
@@ -165,7 +174,7 @@ def _rounded(bound: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Top:
+class SphereMaximum:
     """A bound of a quadratic form on a sphere, the point that attains it, and the sphere's multiplier."""
 
     value: float
@@ -220,7 +229,7 @@ class RelaxedScores:
         top = self.top(multipliers, size)
         return top.value, top.place - top.place**2
 
-    def top(self, multipliers: FloatArray, size: float) -> Top:
+    def top(self, multipliers: FloatArray, size: float) -> SphereMaximum:
         """The bound for these multipliers (N,), and the point that attains it."""
         n_robots = len(multipliers)
         mean, linear = size / n_robots, multipliers - self.charge
@@ -230,10 +239,10 @@ class RelaxedScores:
         levels, turn = np.linalg.eigh(self.inner - (self.across * multipliers[:, None]).T @ self.across)
         slope = turn.T @ (self.across.T @ (2.0 * mean * row_sums + linear))
         top = _on_sphere(levels, slope, radius)
-        return Top(fixed + top.value, mean + self.across @ (turn @ top.place), top.level)
+        return SphereMaximum(fixed + top.value, mean + self.across @ (turn @ top.place), top.level)
 
 
-def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> Top:
+def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> SphereMaximum:
     """A bound of ``sum of levels z^2 + slope z`` over ``|z|^2 = radius``, the largest value up to rounding; its point.
 
     For every ``t > levels`` the value is at most ``t radius + sum of slope^2 / (4 (t - levels))``; the best ``t`` has
@@ -251,7 +260,7 @@ def _on_sphere(levels: FloatArray, slope: FloatArray, radius: float) -> Top:
     place = slope / (2.0 * (best - levels))
     top = best * radius + float((slope**2 / (4.0 * (best - levels))).sum())
     place[-1] += np.sqrt(max(radius - float(place @ place), 0.0))
-    return Top(top, place, best)
+    return SphereMaximum(top, place, best)
 
 
 def _squared(levels: FloatArray, slope: FloatArray, t: float) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite, readonly
-from ratt_opt._values import ByValue, Shown
+from ratt_opt._values import ByValue, ReprMixin
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.information import symmetric_inverse
 
@@ -40,7 +40,7 @@ class Innovation:
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Belief(ByValue, Shown):
+class Belief(ByValue, ReprMixin):
     """``mean`` (M, d) and ``covariance`` (M, d, d) of the targets' states, which begin with x, y [m]."""
 
     mean: FloatArray

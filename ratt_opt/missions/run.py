@@ -20,9 +20,9 @@ from ratt_opt.missions.memory import Memory, Pieces
 from ratt_opt.missions.mission import Mission
 from ratt_opt.missions.planning import plan_team
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
-from ratt_opt.missions.players.attackers import attack_of, attacker_called
+from ratt_opt.missions.players.attackers import attack_of, get_attacker
 from ratt_opt.missions.players.named import name_of
-from ratt_opt.missions.players.planners import elements_of, planned_with, planner_called
+from ratt_opt.missions.players.planners import elements_of, get_planner, planned_with
 from ratt_opt.missions.result import GroupTrack, MissionStep
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import MissionModel, World
@@ -104,7 +104,7 @@ def run_mission(
         raise InputError("sharing", f"must be {' or '.join(SHARING)}", sharing)
     planner, attacker = current_name("planner", planner), current_name("attacker", attacker)
     world = World(scenario, model or MissionModel(), horizon)
-    players = _Players(planner_called(planner), attacker_called(attacker), attack_model(attacks))
+    players = _Players(get_planner(planner), get_attacker(attacker), attack_model(attacks))
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
     settings = {name: _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}

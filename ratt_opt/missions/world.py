@@ -24,7 +24,7 @@ from ratt_opt.missions.models.sensors import check_sensor, robots_by_sensor, sen
 from ratt_opt.missions.models.targets import TargetMotion, check_motion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.model import Scenario
-from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, get_criterion
 from ratt_opt.setfunctions.information import WIDEST
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class MissionModel:
         for name, known in (("linearisation", get_args(Linearisation)), ("output", OUTPUTS)):
             if getattr(self, name) not in known:
                 raise InputError(name, f"must be {', '.join(known)}", getattr(self, name))
-        criterion_called(self.objective)
+        get_criterion(self.objective)
         check_sensor(self.sensor)
         if not isinstance(self.motion, TargetMotion):
             check_motion(self.motion)
@@ -193,7 +193,7 @@ class World:
         weights = np.array([target.weight for target in self.scenario.targets])
         output = output_matrix(self.model.output, self.horizon, r)
         if output is None:
-            return criterion_called(self.model.objective)(prior, information, weights)
+            return get_criterion(self.model.objective)(prior, information, weights)
         return WITH_OUTPUT[self.model.objective](prior, information, weights, output=output)
 
     def communication(self, poses: FloatArray, standing: Attack) -> CommunicationGraph:

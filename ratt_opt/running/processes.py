@@ -22,7 +22,7 @@ T = TypeVar("T")
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
-class _Pool(ProcessPoolExecutor):
+class _ProcessPool(ProcessPoolExecutor):
     """One that ends although its processes died while a call was being sent to them.
 
     Before 3.12 the thread that sends it, and with it shutting down and the interpreter's exit, waits for ever
@@ -51,7 +51,7 @@ def local_processes(workers: int | None) -> Iterator[Executor]:
     """
     known = set(multiprocessing.active_children())
     with _one_thread_each():
-        executor = _Pool(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
+        executor = _ProcessPool(workers, multiprocessing.get_context("spawn"), initializer=_follow_parent)
         try:
             with _uninterrupted():
                 executor.submit(os.getpid)  # starts all of them

@@ -6,7 +6,7 @@ from inspect import isfunction
 
 from ratt_opt.scenario.sensor import Sensor
 
-__all__ = ["replaced_methods", "tells_itself"]
+__all__ = ["replaced_methods", "states_information"]
 
 
 def replaced_methods(sensor: Sensor) -> tuple[str, ...]:
@@ -15,6 +15,6 @@ def replaced_methods(sensor: Sensor) -> tuple[str, ...]:
     return tuple(name for name, method in known.items() if getattr(type(sensor), name) is not method)
 
 
-def tells_itself(sensor: Sensor) -> bool:
+def states_information(sensor: Sensor) -> bool:
     """Tell whether the sensor states its information itself, whatever its noise fields say."""
     return "information" in replaced_methods(sensor)

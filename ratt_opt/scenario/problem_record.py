@@ -14,7 +14,7 @@ from ratt_opt._validation import check_number
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.record import Record, Whole
-from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, get_criterion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -119,7 +119,7 @@ class ProblemRecord(Record):
         )
 
     def _criterion(self, objective: str) -> InformationObjective:
-        kind = criterion_called(objective)
+        kind = get_criterion(objective)
         if self._output is None:
             return kind(*self._matrices)
         if objective not in WITH_OUTPUT:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import check_distinct, check_integer, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.scenario.own_sensors import tells_itself
+from ratt_opt.scenario.own_sensors import states_information
 from ratt_opt.scenario.sensors.model import SensorModel
 from ratt_opt.scenario.sensors.range_bearing import RangeBearing
 
@@ -109,7 +109,7 @@ def _model(sensor: Sensor | SensorModel, robot: int) -> SensorModel:
     """A robot's sensor as a model. InputError : it states its own information."""
     if isinstance(sensor, SensorModel):
         return sensor
-    if tells_itself(sensor):
+    if states_information(sensor):
         raise InputError(f"sensor of robots[{robot}]", "must not state its own information", type(sensor).__name__)
     return RangeBearing(sensor)
 

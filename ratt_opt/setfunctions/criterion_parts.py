@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.setfunctions.planar_levels import PlanarLevels
 
-__all__ = ["Choices", "CriterionParts", "SeparableMinorant", "Tangent", "TargetTangents"]
+__all__ = ["CriterionParts", "OtherElements", "SeparableMinorant", "Tangent", "TargetTangents"]
 
 ROUNDING = 1e-12
 """Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
@@ -54,7 +54,7 @@ class TargetTangents:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Choices:
+class OtherElements:
     """The elements of the owners other than ``x``'s: K elements of R owners about M targets, d by d.
 
     ``elements`` : (K,); ``owners`` : (K,) position of the owner; ``first`` : (R,) first position of each owner's
@@ -154,7 +154,7 @@ class CriterionParts(ProofParts):
                 setattr(cls, part, getattr(CriterionParts, part))
 
     @classmethod
-    def states(cls, part: str) -> bool:
+    def overrides(cls, part: str) -> bool:
         """Tell whether the criterion overrides a part instead of leaving it to the generic bounds."""
         return getattr(cls, part) is not getattr(CriterionParts, part)
 
@@ -281,7 +281,7 @@ class CriterionParts(ProofParts):
         floor = above - below - ROUNDING * (np.abs(above) + np.abs(below)) - 2 * slack
         return np.maximum(floor, 0.0), self.singletons() * (1 + 10 * ROUNDING)
 
-    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:  # noqa: ARG002
+    def marginal_minorant(self, added: FloatArray, others: OtherElements, share: FloatArray) -> SeparableMinorant:  # noqa: ARG002
         """Bound the marginal of information ``added`` (M, d, d) over all contexts, best at a relaxed one.
 
         Valid for any ``share`` (K,), which sums to at most 1 over each owner's elements. By default 0: none is less.
@@ -294,5 +294,5 @@ class CriterionParts(ProofParts):
 
 
 _PUBLIC = (name for owner in (ProofParts, CriterionParts) for name in vars(owner) if not name.startswith("_"))
-OPTIONAL_PARTS = {"is_submodular", *_PUBLIC} - {"criterion", "gradient", "value", "states", "prior_magnitude"}
+OPTIONAL_PARTS = {"is_submodular", *_PUBLIC} - {"criterion", "gradient", "value", "overrides", "prior_magnitude"}
 """Parts that hold for a criterion's own formula only: a subclass with another formula does not inherit them."""

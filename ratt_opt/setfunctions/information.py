@@ -114,8 +114,8 @@ class InformationObjective(CriterionParts):
         self.weights: FloatArray = readonly(_check_weights(weights, self.n_targets))
         self.prior_information: FloatArray = readonly(symmetric_inverse(self.prior))
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
-        states_value_alone = self.states("value") and not self.states("criterion")
-        baseline = np.zeros(self.n_targets) if states_value_alone else self.criterion(self.prior_information)
+        is_own_value = self.overrides("value") and not self.overrides("criterion")
+        baseline = np.zeros(self.n_targets) if is_own_value else self.criterion(self.prior_information)
         self._baseline: FloatArray = readonly(baseline)
         self.condition: FloatArray = readonly(self._condition())
         self._singletons: FloatArray | None = None
@@ -192,7 +192,7 @@ class InformationObjective(CriterionParts):
         """The targets; ``None`` if the criterion states another value than the sum or the least over targets."""
         if self.is_least_of_targets:
             return TargetParts(self, top=np.full(self.n_targets, self._baseline.max()), is_sum=False)
-        if self.states("value") or self.states("combine"):
+        if self.overrides("value") or self.overrides("combine"):
             return None
         return TargetParts(self, top=self._baseline, is_sum=True)
 

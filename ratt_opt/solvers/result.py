@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 import numpy as np
 
 from ratt_opt._rounding import down, up
-from ratt_opt._values import ByValue, Shown, plain, shown
+from ratt_opt._values import ByValue, ReprMixin, plain, shown
 from ratt_opt.attack.task import outward
 from ratt_opt.problem import Plan
 
@@ -40,7 +40,7 @@ class NonrobustPlan(Plan):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MaxMinResult(ByValue, Shown):
+class MaxMinResult(ByValue, ReprMixin):
     """Claim: ``lower <= Phi* <= upper``, and the plan ``elements`` is worth at least ``lower`` under any attack.
 
     ``Phi*`` is the largest worst-case value of any plan [unit of the objective]. Two results are equal when all

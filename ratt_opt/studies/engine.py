@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from ratt_opt.studies.cases import Cell
-    from ratt_opt.studies.store import Journal
+    from ratt_opt.studies.store import TrialJournal
     from ratt_opt.studies.study import Study
 
 __all__ = ["SweepError", "run"]
@@ -100,7 +100,9 @@ def _running(executor: Executor | None, workers: int | None) -> Iterator[Executo
         yield processes
 
 
-def _run_missing(study: Study, journal: Journal, executor: Executor | None, trials: int, progress: Progress) -> None:
+def _run_missing(
+    study: Study, journal: TrialJournal, executor: Executor | None, trials: int, progress: Progress
+) -> None:
     """Run what the journal lacks, and append each trial as it ends."""
     done = journal.done
     # All cases of a trial before the next trial: an interrupted sweep is balanced.
@@ -148,7 +150,9 @@ def _finished(futures: Iterable[Future[dict[str, Cell]]], executor: Executor) ->
                 raise SweepError(f"the cluster has had no worker for {PATIENCE:g} s; {AGAIN}") from None
 
 
-def _keep_finished(journal: Journal, futures: Mapping[Future[dict[str, Cell]], tuple[int, int]], study: Study) -> None:
+def _keep_finished(
+    journal: TrialJournal, futures: Mapping[Future[dict[str, Cell]], tuple[int, int]], study: Study
+) -> None:
     """Append what else has finished by now: futures that end together are met in any order."""
     for future, (case, trial) in futures.items():
         finished = future.done() and not future.cancelled() and future.exception() is None

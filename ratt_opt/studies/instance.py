@@ -13,7 +13,7 @@ from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.attackers import attack_of
-from ratt_opt.missions.players.named import player_called
+from ratt_opt.missions.players.named import get_player
 from ratt_opt.missions.players.planners import RefinedPlanner, elements_of, planned_with
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.generator import random_scenario
@@ -128,7 +128,7 @@ class Instance:
         if callable(planner):
             world = None if self.drawn is None else scenario_world(self.drawn, self.problem)
             return elements_of(planned_with(planner, self.problem, world), self.problem)
-        return player_called("planner", planner, PLANNERS)(self)
+        return get_player("planner", planner, PLANNERS)(self)
 
     def strike(self, attacker: str | OwnAttacker, plan: IntArray) -> tuple[Attack, float | None]:
         """The attack of an attacker of :data:`ATTACKERS`, or of your own, and what no attack goes below.
@@ -142,7 +142,7 @@ class Instance:
         if callable(attacker):
             own = attacker(self.problem, plan)
             return attack_of(own, self.problem), getattr(own, "lower", 0.0)
-        found = player_called("attacker", attacker, ATTACKERS)(self, plan)
+        found = get_player("attacker", attacker, ATTACKERS)(self, plan)
         return attack_of(found, self.problem), getattr(found, "lower", None)
 
     @property

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.studies.cases import Cell
     from ratt_opt.studies.study import Study
 
-__all__ = ["Journal", "open_journal", "read_table"]
+__all__ = ["TrialJournal", "open_journal", "read_table"]
 
 FORMAT = 2
 CHECKSUM = "checksum"
@@ -38,7 +38,7 @@ CHECKSUM = "checksum"
 MANIFEST, JOURNAL, TABLE = "study.json", "journal.csv", "table.csv"
 
 
-class Journal:
+class TrialJournal:
     """The finished trials of one study; made by :func:`open_journal`."""
 
     def __init__(self, study: Study, folder: Path, stream: TextIO, rows: list[dict[str, str]]) -> None:
@@ -80,7 +80,7 @@ class Journal:
 
 
 @contextmanager
-def open_journal(study: Study, folder: Path, *, accept_old_rows: bool = False) -> Iterator[Journal]:
+def open_journal(study: Study, folder: Path, *, accept_old_rows: bool = False) -> Iterator[TrialJournal]:
     """Open the results of ``study`` in ``folder`` for appending; nobody else may append meanwhile.
 
     ``accept_old_rows`` : keep rows that other code or versions made, and let the manifest say so.
@@ -97,7 +97,7 @@ def open_journal(study: Study, folder: Path, *, accept_old_rows: bool = False) -
         if manifest:
             write_json(folder / MANIFEST, manifest)
         _cut_torn_line(path)
-        yield Journal(study, folder, stream, _read(path, study))
+        yield TrialJournal(study, folder, stream, _read(path, study))
 
 
 def read_table(folder: Path) -> list[dict[str, str]]:

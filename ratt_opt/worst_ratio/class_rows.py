@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.worst_ratio.program import MANY_COLUMNS, Row
+from ratt_opt.worst_ratio.program import MANY_COLUMNS, Inequality
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -44,16 +44,16 @@ class Submodular:
         """Column ``mask``: the empty set has none, so column 0 is free for the ratio."""
         return mask
 
-    def first_rows(self) -> list[Row]:
+    def first_rows(self) -> list[Inequality]:
         """Monotone and curvature rows; with diminishing returns the largest contexts imply all others.
 
         Diminishing returns come along for five and six robots, else :meth:`violated` finds them.
         """
         everything = self.n_columns - 1
-        rows = [Row(_terms((everything, 1), (everything & ~(1 << x), -1))) for x in range(self.n)]
+        rows = [Inequality(_terms((everything, 1), (everything & ~(1 << x), -1))) for x in range(self.n)]
         for x in range(self.n):
             for context in self._largest_contexts(x):
-                rows.append(Row(_terms((context | 1 << x, 1), (context, -1), (1 << x, -self.kept))))
+                rows.append(Inequality(_terms((context | 1 << x, 1), (context, -1), (1 << x, -self.kept))))
         if self.is_complete:
             rows += [_diminishing(a, b, base) for a, b in self._pairs() for base in self._bases(a, b).tolist()]
         return rows
@@ -72,7 +72,7 @@ class Submodular:
         picks = product(*((1 << i, 1 << self.n_robots + i) for i in others))
         return [sum(pick) for pick in picks]
 
-    def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:  # noqa: ARG002  (every subset has a column)
+    def violated(self, x: FloatArray, used: Collection[int]) -> list[Inequality]:  # noqa: ARG002  (every subset has a column)
         """Diminishing returns ``f(S+a) + f(S+b) >= f(S+a+b) + f(S)`` that fail; empty in the class."""
         if self.is_complete:
             return []
@@ -116,17 +116,17 @@ class NonDecreasing:
         """Column of a subset; columns 1 to 2N hold the largest marginals."""
         return self._columns[mask]
 
-    def first_rows(self) -> list[Row]:
+    def first_rows(self) -> list[Inequality]:
         """Bounds on single elements; :meth:`violated` finds all other rows."""
         rows = []
         for x in range(self.n):
             if 1 << x in self._columns:
                 single = self._columns[1 << x]
-                rows.append(Row({1 + x: Fraction(1), single: Fraction(-1)}))
-                rows.append(Row({single: Fraction(1), 1 + x: -self.kept}))
+                rows.append(Inequality({1 + x: Fraction(1), single: Fraction(-1)}))
+                rows.append(Inequality({single: Fraction(1), 1 + x: -self.kept}))
         return rows
 
-    def violated(self, x: FloatArray, used: Collection[int]) -> list[Row]:
+    def violated(self, x: FloatArray, used: Collection[int]) -> list[Inequality]:
         """Pairs of used subsets whose values no function of the class can have; empty when they extend to it."""
         masks = np.array([0, *used], dtype=np.int64)
         values = np.array([0.0, *(x[self._columns[mask]] for mask in used)])
@@ -141,7 +141,7 @@ class NonDecreasing:
         result: FloatArray = (b & ~a) @ marginals - float(self.kept) * ((a & ~b) @ marginals)
         return result
 
-    def pair(self, start: int, end: int) -> Row:
+    def pair(self, start: int, end: int) -> Inequality:
         """Yield the rows of the class for two subsets in use (0: the empty one)."""
         terms: dict[int, Fraction] = {}
         if start:
@@ -152,7 +152,7 @@ class NonDecreasing:
             inside = (end >> x & 1) - (start >> x & 1)
             if inside:
                 terms[1 + x] = Fraction(1) if inside > 0 else -self.kept
-        return Row({j: value for j, value in terms.items() if value})
+        return Inequality({j: value for j, value in terms.items() if value})
 
     def optimal_values(self, x: FloatArray, used: Collection[int], masks: Sequence[int]) -> FloatArray:
         """Values, in the largest extension, of subsets that the program need not have used."""
@@ -176,8 +176,8 @@ ClassRows = Submodular | NonDecreasing
 """Columns for the values of subsets (column 0 is the ratio), and the rows that put them in the class."""
 
 
-def _diminishing(a: int, b: int, base: int) -> Row:
-    return Row(_terms((base | 1 << a, 1), (base | 1 << b, 1), (base | 1 << a | 1 << b, -1), (base, -1)))
+def _diminishing(a: int, b: int, base: int) -> Inequality:
+    return Inequality(_terms((base | 1 << a, 1), (base | 1 << b, 1), (base | 1 << a | 1 << b, -1), (base, -1)))
 
 
 def _terms(*terms: tuple[int, int | Fraction]) -> dict[int, Fraction]:

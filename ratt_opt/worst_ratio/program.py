@@ -24,15 +24,25 @@ if TYPE_CHECKING:
     Multipliers = dict[int, Fraction]
     """Rational multipliers by row."""
 
-__all__ = ["BEHIND", "DENOMINATORS", "MANY_COLUMNS", "ClaimedOptimum", "RatioProgram", "Row",
-           "basic_multipliers", "checked_bound", "proved_bound", "rational_points"]  # fmt: skip
+__all__ = [
+    "BEHIND",
+    "DENOMINATORS",
+    "MANY_COLUMNS",
+    "ClaimedOptimum",
+    "Inequality",
+    "RatioProgram",
+    "basic_multipliers",
+    "checked_bound",
+    "proved_bound",
+    "rational_points",
+]  # fmt: skip
 
 MANY_COLUMNS = 1000
 """Columns from which on an interior-point method with crossover on all rows beats simplex on a growing list of rows."""
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Inequality:
     """``sum_j terms[j] x_j >= least``."""
 
     terms: Mapping[int, Fraction]
@@ -62,10 +72,10 @@ class RatioProgram:
         self._program = LinearProgram(np.eye(1, n_columns)[0])
         if n_columns >= MANY_COLUMNS:
             self._program.option("solver", "ipm")
-        self.rows: list[Row] = []
+        self.rows: list[Inequality] = []
         self.on: list[bool] = []
 
-    def add(self, rows: Iterable[Row]) -> list[int]:
+    def add(self, rows: Iterable[Inequality]) -> list[int]:
         """Append rows, switched on, and return their indices."""
         rows = list(rows)
         first = len(self.rows)

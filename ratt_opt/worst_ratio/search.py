@@ -23,7 +23,14 @@ from ratt_opt.errors import ProofError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.graph.threat import Threat
-from ratt_opt.worst_ratio.program import BEHIND, ClaimedOptimum, RatioProgram, Row, proved_bound, rational_points
+from ratt_opt.worst_ratio.program import (
+    BEHIND,
+    ClaimedOptimum,
+    Inequality,
+    RatioProgram,
+    proved_bound,
+    rational_points,
+)
 from ratt_opt.worst_ratio.witness import scaled_values
 
 if TYPE_CHECKING:
@@ -136,9 +143,9 @@ class RatioSearch:
         self._core = frozenset(mask for pair in skeleton.comparisons for mask in pair)
         column, groups = rows.column, skeleton.groups
         self.program.add(rows.first_rows())
-        self.program.add(Row({column(a): Fraction(1), column(b): Fraction(-1)}) for a, b in skeleton.comparisons)
-        hit = [Row({0: Fraction(1), column(group): Fraction(-1)}) for group in groups]
-        kept = [Row({column(group << skeleton.n_robots): Fraction(1)}, Fraction(1)) for group in groups]
+        self.program.add(Inequality({column(a): Fraction(1), column(b): Fraction(-1)}) for a, b in skeleton.comparisons)
+        hit = [Inequality({0: Fraction(1), column(group): Fraction(-1)}) for group in groups]
+        kept = [Inequality({column(group << skeleton.n_robots): Fraction(1)}, Fraction(1)) for group in groups]
         self._hit = dict(zip(groups, self.program.add(hit), strict=True))
         self._saved = dict(zip(groups, self.program.add(kept), strict=True))
         forced = frozenset(outcome[0] for outcome in skeleton.outcomes if len(outcome) == 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from analysis.golden.comparison import apart, compared, lost, read_rows
-from analysis.golden.corpus import PARTS, case_called, cases
+from analysis.golden.corpus import PARTS, cases, get_case
 from analysis.golden.measure import measured
 from analysis.golden.sample import sample
 from analysis.tables import append_csv
@@ -73,6 +73,6 @@ def test_a_sample_is_answered_as_it_was():
             found = measured(case)
             now[case.part, case.name] = {name: str(value) for name, value in found.items()}
     for key in lost(recorded, now):  # its first run may have loaded modules within its limit
-        now[key] = {name: str(value) for name, value in measured(case_called(*key)).items()}
+        now[key] = {name: str(value) for name, value in measured(get_case(*key)).items()}
     assert not apart(recorded, now)
     assert not lost(recorded, now)

@@ -10,7 +10,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
-from ratt_opt.curvatures.separable.marginal_brackets import choices_beside
+from ratt_opt.curvatures.separable.marginal_brackets import other_elements
 from tests.curvatures.engine import RATIOS_SEARCHED, SEARCHED, enumerated
 from tests.interrupts import interrupted_at
 from tests.setfunctions import oracle
@@ -165,7 +165,7 @@ def test_minorants_lie_below_every_marginal_and_touch_at_contexts(kind):
             information = information + 0.05 * np.eye(dimension)
         f = OBJECTIVES[kind](prior, information, rng.uniform(0.5, 2, 2))
         owners = np.array([0, 1, 1, 2, 2, 2, 3])
-        others = choices_beside(f, owners, 0)
+        others = other_elements(f, owners, 0)
         vertex = trial % 3 == 0
         raw = rng.random(6) * (rng.random(6) < 0.8) + 1e-9
         share = np.array([1.0, 0, 0, 1, 0, 1]) if vertex else raw / np.bincount(others.owners, raw)[others.owners]

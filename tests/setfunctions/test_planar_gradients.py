@@ -21,7 +21,7 @@ def test_the_planar_gradient_is_the_gradient_by_entries(name, seed):
 def test_only_one_criterion_is_decided_by_an_axis_and_it_has_no_planar_gradient():
     rng = np.random.default_rng(0)
     for name, criterion in OBJECTIVES.items():
-        assert criterion.states("planar_levels") == (name == "maxeig")
+        assert criterion.overrides("planar_levels") == (name == "maxeig")
     with pytest.raises(ro.InputError, match=r"planar_gradient\(a, b, c\)"):
         OBJECTIVES["maxeig"](*information_data(rng, 3, 2)).planar_gradient(1.0, 0.0, 1.0)
 
@@ -34,6 +34,6 @@ def test_a_criterion_built_on_another_one_calls_it_and_inherits_none_of_its_part
 
     prior, information = information_data(np.random.default_rng(1), 4, 3)
     scaled, plain = Scaled(prior, information), OBJECTIVES[name](prior, information)
-    assert (Scaled.compiled_code, Scaled.states("planar_levels")) == (None, False)
+    assert (Scaled.compiled_code, Scaled.overrides("planar_levels")) == (None, False)
     posterior = plain.posterior_information(np.array([0, 2]))
     assert scaled.criterion(posterior) == pytest.approx(2 * plain.criterion(posterior))

@@ -16,7 +16,7 @@ from ratt_opt.attack.edge_cuts.kept_links import groups_above, some_groups_above
 from ratt_opt.attack.edge_cuts.listed import partition_that_keeps
 from ratt_opt.attack.edge_cuts.program import KeptProgram
 from ratt_opt.budget import Budget, OutOfBudget, Stop
-from ratt_opt.graph.largest_group.annealed_cut import Cooling, Network
+from ratt_opt.graph.largest_group.annealed_cut import Cooling, PricedArcs
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -103,7 +103,7 @@ class CutSearch:
 
     def _anneal(self) -> None:
         network, n = self.network, self.network.n_nodes
-        arcs, rng = Network.weighted(network.ends, network.weight, n), np.random.default_rng(self.size)
+        arcs, rng = PricedArcs.weighted(network.ends, network.weight, n), np.random.default_rng(self.size)
         fewest = -(-int(network.size.sum()) // self.size)
         unit = float(network.weight.mean())
         for k in range(self.params.coolings):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer
-from ratt_opt._values import Shown
+from ratt_opt._values import ReprMixin
 from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, PlanValues, outward
 from ratt_opt.attackers.exact import strongest_attack
 from ratt_opt.attackers.link_choice.choice_search import best_choice
@@ -36,7 +36,7 @@ ATTACK_SHARE = 0.2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BestLinks(Shown):
+class BestLinks(ReprMixin):
     """Claim: ``lower <= worst case of the plan with the best k links <= upper`` [unit of the objective].
 
     ``links`` : at most k, ascending; with them the worst case is ``lower``. ``before`` : the worst attack on the team

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
     from ratt_opt.certificates.plan_sets import PlanSets
-    from ratt_opt.certificates.verifier.sizes import LargestGroup
+    from ratt_opt.certificates.verifier.sizes import GroupComposition
 
 __all__ = ["Found", "grow_tree"]
 
@@ -47,7 +47,7 @@ class Found:
         return self.bounds.setdefault(bound, len(self.bounds))
 
 
-def grow_tree(sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> list[Any]:
+def grow_tree(sets: PlanSets, bounds: ScoreBounds, group: GroupComposition, found: Found) -> list[Any]:
     """Return the tree.
 
     Raises
@@ -60,7 +60,7 @@ def grow_tree(sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: F
 class _Tree:
     """The weakest robot first sees in the group, or does not; when all are known that see, who else is inside."""
 
-    def __init__(self, sets: PlanSets, bounds: ScoreBounds, group: LargestGroup, found: Found) -> None:
+    def __init__(self, sets: PlanSets, bounds: ScoreBounds, group: GroupComposition, found: Found) -> None:
         self.group, self.found, self.bounds = group, found, CaseBounds(bounds, group)
         self.objective, self.threshold = sets.objective, sets.threshold
         self.own = self.objective.information[sets.elements]

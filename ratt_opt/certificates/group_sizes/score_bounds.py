@@ -20,11 +20,11 @@ from ratt_opt.graph.link_scores import SHARES, most_scores
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.certificates.verifier.sizes import LargestGroup
+    from ratt_opt.certificates.verifier.sizes import GroupComposition
     from ratt_opt.graph.communication import CommunicationGraph
-    from ratt_opt.graph.link_scores import RelaxedScores, Top
+    from ratt_opt.graph.link_scores import RelaxedScores, SphereMaximum
 
-__all__ = ["CaseBounds", "Looked", "ScoreBounds"]
+__all__ = ["CaseBound", "CaseBounds", "ScoreBounds"]
 
 NEAR, STEPS = 1.5, 6
 """Links (twice) above what a group must score from which a bound is not tried to be lowered, and values it may take.
@@ -39,7 +39,7 @@ SPARE = 0.02
 
 
 @dataclass(frozen=True, slots=True)
-class Looked:
+class CaseBound:
     """Bounds of a case.
 
     ``vector``, ``diagonal`` : the bound that closes it, if any; ``place`` (N,) of its best fractional group;
@@ -92,7 +92,7 @@ class ScoreBounds:
 class CaseBounds:
     """Bounds of what groups of a case score."""
 
-    def __init__(self, bounds: ScoreBounds, group: LargestGroup) -> None:
+    def __init__(self, bounds: ScoreBounds, group: GroupComposition) -> None:
         self._known, self._costs, self._group = bounds.known, bounds.costs, group
         self._size, self._n = group.robots, len(bounds.costs[0].near)
         self._need = [-int(limit) for limit in group.limits]
@@ -101,7 +101,7 @@ class CaseBounds:
         """(K, N) multipliers to begin with."""
         return self._known.multipliers[:, self._size]
 
-    def look(self, inside: int, outside: int, start: FloatArray) -> Looked:
+    def look(self, inside: int, outside: int, start: FloatArray) -> CaseBound:
         """Look for a bound that closes the case of masks."""
         members, others = _robots(inside, self._n), ~_robots(inside | outside, self._n)
         case, joining = (inside, (1 << self._n) - 1 & ~(inside | outside)), self._size - inside.bit_count()
@@ -120,11 +120,11 @@ class CaseBounds:
                     continue
             kept = tuple(diagonal.tolist())
             if self._costs[vector].are_above(self._group.limits[vector], list(kept), case, joining):
-                return Looked(vector, kept, place, multipliers)
-        return Looked(-1, (), place, multipliers)
+                return CaseBound(vector, kept, place, multipliers)
+        return CaseBound(-1, (), place, multipliers)
 
 
-def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, Top]:
+def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, SphereMaximum]:
     """Multipliers of a bound that is lower, until it is below, and that bound."""
     best = start, relaxed.top(start, joining)
 

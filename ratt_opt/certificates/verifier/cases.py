@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.statement import Statement
     from ratt_opt.certificates.verifier.worth import Known, Worth
 
-    Close = Callable[["Case", object], None]
+    Close = Callable[["GroupCase", object], None]
 
-__all__ = ["BRANCHES", "Case", "Cases", "is_short", "mask_of", "read_node", "robots_of"]
+__all__ = ["BRANCHES", "Cases", "GroupCase", "is_short", "mask_of", "read_node", "robots_of"]
 
 BRANCHES = ("sense", "inside", "sensing", "blinded", "limit")
 PLAIN = ("worth", "copies", "budget", "listed")
@@ -27,7 +27,7 @@ PLAIN = ("worth", "copies", "budget", "listed")
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class GroupCase:
     """Masks: robots that sense for sure, and the others that may sense, may be blinded, may be out of the group.
 
     ``known`` : those that sense for sure, as ``Worth`` has them; ``least`` to ``most`` robots of the group sense, and
@@ -105,16 +105,22 @@ class Cases:
         """
         everyone = self.everyone
         members = everyone if among is None else among
-        root = Case(self.worth.nobody, everyone, 0, members, 0, everyone, size, size, 0, 0)
+        root = GroupCase(self.worth.nobody, everyone, 0, members, 0, everyone, size, size, 0, 0)
         return self.check(tree, root, {"budget": self._close_no_set}, ("sense", "limit"))
 
-    def groups(self, most: int, least: int = 0, blinded: int | None = None) -> Case:
+    def groups(self, most: int, least: int = 0, blinded: int | None = None) -> GroupCase:
         """Groups of an attack: ``least`` to ``most`` of the robots sense; ``blinded``, if given, are blinded."""
         everyone, low, high = self.everyone, blinded or 0, self.blinded if blinded is None else blinded
-        return Case(self.worth.nobody, everyone, 0, everyone, everyone & ~self.safe, everyone, least, most, low, high)
+        return GroupCase(
+            self.worth.nobody, everyone, 0, everyone, everyone & ~self.safe, everyone, least, most, low, high
+        )
 
     def check(
-        self, tree: object, root: Case, closing: Mapping[str, Close] | None = None, branches: tuple[str, ...] = BRANCHES
+        self,
+        tree: object,
+        root: GroupCase,
+        closing: Mapping[str, Close] | None = None,
+        branches: tuple[str, ...] = BRANCHES,
     ) -> int:
         """Check that a tree closes a case; returns the number of its leaves.
 
@@ -123,7 +129,7 @@ class Cases:
         known = {"worth": self._close_worth, "copies": self._close_copies, "budget": self._close_beyond}
         close: dict[str, Close] = {**known, **(closing or {})}
 
-        def expand(node: object, case: Case) -> Iterator[Case]:
+        def expand(node: object, case: GroupCase) -> Iterator[GroupCase]:
             name, number = read_node(node)
             need((number is not None) == (name not in PLAIN), f"lower proof: a node is not as {name} must be")
             if name in close:
@@ -134,7 +140,7 @@ class Cases:
 
         return walk("lower", tree, root, expand)
 
-    def halves(self, name: str, number: object, case: Case) -> Iterator[Case]:
+    def halves(self, name: str, number: object, case: GroupCase) -> Iterator[GroupCase]:
         """Yield the cases below a branch."""
         n = self.about.n
         if name == "sensing":
@@ -164,7 +170,7 @@ class Cases:
                 yield replace(case, may_leave=case.may_leave & ~bit) if may_blind else self._sensing(case, i)
                 yield replace(case, may_sense=case.may_sense & ~bit, may_blind=case.may_blind & ~bit)
 
-    def _sensing(self, case: Case, robot: int) -> Case:
+    def _sensing(self, case: GroupCase, robot: int) -> GroupCase:
         others = self.everyone & ~(1 << robot)
         return replace(
             case,
@@ -175,10 +181,10 @@ class Cases:
             may_leave=case.may_leave & others,
         )
 
-    def _close_worth(self, case: Case, _: object) -> None:
+    def _close_worth(self, case: GroupCase, _: object) -> None:
         self.worth.require(case.known)
 
-    def _close_copies(self, case: Case, _: object) -> None:
+    def _close_copies(self, case: GroupCase, _: object) -> None:
         """Close a case: the sure robots with any ``count`` missing ones of the possible robots reach the claim."""
         among, count = case.may_sense, case.least - case.sensing.bit_count()
         if count <= 0:
@@ -187,13 +193,13 @@ class Cases:
         need(0 < count <= among.bit_count(), "lower proof: no robot is missing, or too few are left")
         self.worth.require(case.known, robots_of(among), count)
 
-    def _close_no_set(self, case: Case, _: object) -> None:
+    def _close_no_set(self, case: GroupCase, _: object) -> None:
         need(is_short(case) or case.least > case.most, "lower proof: a leaf's set may have robots enough")
 
-    def _close_beyond(self, case: Case, _: object) -> None:
+    def _close_beyond(self, case: GroupCase, _: object) -> None:
         need(self._is_beyond(case), "lower proof: a leaf's group may be part of an attack")
 
-    def _is_beyond(self, case: Case) -> bool:
+    def _is_beyond(self, case: GroupCase) -> bool:
         """Test whether an attack within the budgets leaves no group of the case."""
         inside, outside, lost = case.inside, case.outside, 0
         possible = self.everyone & ~outside
@@ -217,7 +223,7 @@ class Cases:
         return bool(inside & ~reached)
 
 
-def is_short(case: Case) -> bool:
+def is_short(case: GroupCase) -> bool:
     """Test whether fewer robots may sense than must."""
     return case.sensing.bit_count() + case.may_sense.bit_count() < case.least
 

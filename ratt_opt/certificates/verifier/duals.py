@@ -28,9 +28,9 @@ from ratt_opt.errors import UndecidedError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.certificates.verifier.cases import Case, Cases, Close
+    from ratt_opt.certificates.verifier.cases import Cases, Close, GroupCase
 
-__all__ = ["Duals", "Listed", "check_duals", "check_partition"]
+__all__ = ["Duals", "ListedGroup", "check_duals", "check_partition"]
 
 LARGEST = 2**53
 """Largest size of duals and flows."""
@@ -39,7 +39,7 @@ MOST_LISTED = 250_000
 
 
 @dataclass(frozen=True, slots=True)
-class Listed:
+class ListedGroup:
     """A group within the budgets, as a bit mask: what it costs, robots blinded in it at least, links that leave it."""
 
     robots: int
@@ -67,10 +67,10 @@ class Duals:
         self.robot = [signed("duals robots", dual, LARGEST) for dual in array("duals robots", robots, self.about.n)]
         self.slack = 2 * self.link * self.about.alpha_c + self.blinded * cases.blinded - sum(self.robot)
         self.bounds: list[_Bound] = []
-        self._listed: dict[int, Listed] = {}
+        self._listed: dict[int, ListedGroup] = {}
 
     @property
-    def listed(self) -> list[Listed]:
+    def listed(self) -> list[ListedGroup]:
         """Groups in the order in which leaves list them."""
         return list(self._listed.values())
 
@@ -89,13 +89,13 @@ class Duals:
                 flow[i][j], flow[j][i] = amount, -amount
             self.bounds.append(_Bound(index("bound blinding", blinding, LARGEST), extra, flow))
 
-    def close_by_flow(self, case: Case, number: object) -> None:
+    def close_by_flow(self, case: GroupCase, number: object) -> None:
         """Leaf ``flow``: every group of the case costs more than the slack, or than nothing if that is negative."""
         bound = self.bounds[index("lower tree flow", number, len(self.bounds))]
         limit = max(self.slack, -1)
         need(self.least(case, bound) > limit, "lower proof: a group of a leaf may cost too little")
 
-    def least(self, case: Case, bound: _Bound) -> int:
+    def least(self, case: GroupCase, bound: _Bound) -> int:
         """Return a cost below which no group of the case is.
 
         Of the links that leave it those between decided robots count, those from an open robot to decided ones, and
@@ -131,7 +131,7 @@ class Duals:
         gains += inner[: max(within, 0)]
         return total - sum(sorted(gains, reverse=True)[: max(case.more, 0)])
 
-    def list_group(self, case: Case, _: object) -> None:
+    def list_group(self, case: GroupCase, _: object) -> None:
         """Leaf ``listed``: each robot is inside or out."""
         inside, near = case.inside, self.cases.near
         need(inside | case.outside == case.everyone, "lower proof: a listed group is not decided")
@@ -144,7 +144,7 @@ class Duals:
         need(cost >= 0, "lower proof: a listed group costs less than nothing")
         known = self._listed.get(inside)
         if cost <= self.slack and (known is None or known.need > blinded):
-            self._listed[inside] = Listed(inside, cost, blinded, links)
+            self._listed[inside] = ListedGroup(inside, cost, blinded, links)
             if len(self._listed) > MOST_LISTED:
                 raise UndecidedError(f"not decided: more than {MOST_LISTED} groups are listed")
 

@@ -33,7 +33,7 @@ __all__ = ["CUTS_FORMAT", "VerifiedCuts", "verify_cuts"]
 
 LARGEST = 2**62
 """Largest integer that a file may state."""
-Case = tuple[frozenset[int], frozenset[int]]
+GroupCase = tuple[frozenset[int], frozenset[int]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,7 +123,7 @@ class _Network:
         self.parts = [0] * len(self.links)
         self.unit, self.prices = 1, [0] * self.robots
 
-    def expand(self, node: object, case: Case) -> Iterator[Case]:
+    def expand(self, node: object, case: GroupCase) -> Iterator[GroupCase]:
         """The cases of a split, the robot inside first; none of a leaf that closes its case."""
         inside, outside = case
         if isinstance(node, dict) and set(node) == {"split"}:

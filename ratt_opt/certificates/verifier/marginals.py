@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 __all__ = ["MarginalBounds"]
 
 
-class _Told(NamedTuple):
+class _ElementInformation(NamedTuple):
     """Information of an element, made semidefinite: ``matrices`` by target, without zero ones."""
 
     number: int
     matrices: dict[int, fmpq_mat]
 
 
-class _Beside(NamedTuple):
+class _Context(NamedTuple):
     """State of one target with some information added: ``L``, its ``logdet``, and its value."""
 
     matrix: fmpq_mat
@@ -51,7 +51,7 @@ class MarginalBounds:
 
     def __init__(self, about: Statement) -> None:
         need(about.objective == "logdet", "upper proof: gains diminish with the log-det alone")
-        self._about, self._told = about, list[_Told]()
+        self._about, self._informed = about, list[_ElementInformation]()
         self._raised, self._strongest = cache(self._raised_of), cache(self._strongest_of)
         self._beside, self._gain = cache(self._beside_of), cache(self._gain_of)
         self._elements = [self._raised(e, tuple(about.defect[e])) for e in range(len(about.owner))]
@@ -71,11 +71,11 @@ class MarginalBounds:
                 bound += largest([self._added(self._elements[e], beside) for e in left[i]])
         return bound
 
-    def _added(self, told: _Told, beside: list[tuple[int, ...]]) -> Any:
+    def _added(self, told: _ElementInformation, beside: list[tuple[int, ...]]) -> Any:
         """Bound the marginal of an element."""
         return sum((self._gain(j, beside[j], told.number) for j in told.matrices), arb(0))
 
-    def _strongest_of(self, elements: tuple[int, ...]) -> _Told | None:
+    def _strongest_of(self, elements: tuple[int, ...]) -> _ElementInformation | None:
         """Find one element whose information bounds that of all the others, if there is one.
 
         It has the largest trace; its defects are enlarged, so that it has no less information about any target.
@@ -92,25 +92,27 @@ class MarginalBounds:
                 lacking[j] = max(lacking[j], more)
         return self._raised(best, tuple(lacking))
 
-    def _raised_of(self, element: int, more: tuple[fmpq, ...]) -> _Told:
+    def _raised_of(self, element: int, more: tuple[fmpq, ...]) -> _ElementInformation:
         """An element's information with so much more in every direction of each target."""
         pairs = enumerate(zip(self._about.information[element], more, strict=True))
         raised = {j: x + self._about.identity * delta for j, (x, delta) in pairs}
-        self._told.append(_Told(len(self._told), {j: x for j, x in raised.items() if any(x.entries())}))
-        return self._told[-1]
+        self._informed.append(
+            _ElementInformation(len(self._informed), {j: x for j, x in raised.items() if any(x.entries())})
+        )
+        return self._informed[-1]
 
-    def _beside_of(self, target: int, numbers: tuple[int, ...]) -> _Beside:
-        matrix = sum((self._told[k].matrices[target] for k in numbers), self._about.inverse[target])
+    def _beside_of(self, target: int, numbers: tuple[int, ...]) -> _Context:
+        matrix = sum((self._informed[k].matrices[target] for k in numbers), self._about.inverse[target])
         hold(matrix[0, 0], matrix.nrows() ** 2)
         afford(matrix)
         logdet = arb(matrix.det()).log()
         before = self._beside(target, ()).logdet if numbers else logdet
-        return _Beside(matrix, logdet, self._about.weights[target] * (logdet - before))
+        return _Context(matrix, logdet, self._about.weights[target] * (logdet - before))
 
     def _gain_of(self, target: int, numbers: tuple[int, ...], number: int) -> Any:
         """Compute the marginal value of an element for one target, beside others."""
         known = self._beside(target, numbers)
-        matrix = known.matrix + self._told[number].matrices[target]
+        matrix = known.matrix + self._informed[number].matrices[target]
         afford(matrix)
         after = arb(matrix.det()).log()
         return self._about.weights[target] * (after - known.logdet)

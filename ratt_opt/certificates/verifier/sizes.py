@@ -35,9 +35,9 @@ from ratt_opt.errors import UndecidedError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from ratt_opt.certificates.verifier.cases import Case
+    from ratt_opt.certificates.verifier.cases import GroupCase
 
-__all__ = ["UNIT", "LargestGroup", "LinkCosts", "check_sizes", "largest_groups", "possible_groups"]
+__all__ = ["UNIT", "GroupComposition", "LinkCosts", "check_sizes", "largest_groups", "possible_groups"]
 
 LARGEST = 2**31
 """Largest size of duals, costs and diagonals."""
@@ -58,7 +58,7 @@ def check_sizes(cases: Cases, size: int, *given: object) -> int:
     leaves = 0
     for group, tree in zip(groups, array("trees", trees, len(groups)), strict=True):
 
-        def close_by_form(case: Case, number: object, group: LargestGroup = group) -> None:
+        def close_by_form(case: GroupCase, number: object, group: GroupComposition = group) -> None:
             vector, diagonal = known[index("lower tree form", number, len(known))]
             missing = group.robots - case.inside.bit_count()
             open_ = case.everyone & ~case.inside & ~case.outside
@@ -72,7 +72,7 @@ def check_sizes(cases: Cases, size: int, *given: object) -> int:
 
 def possible_groups(
     cases: Cases, size: int, duals: object, forms: object
-) -> tuple[list[LinkCosts], list[LargestGroup]]:
+) -> tuple[list[LinkCosts], list[GroupComposition]]:
     """Read the costs and their forms; return them and the sizes of a largest group that they leave."""
     about = cases.about
     if about.n > MOST_ROBOTS:
@@ -157,7 +157,7 @@ class LinkCosts:
 
 
 @dataclass(frozen=True, slots=True)
-class LargestGroup:
+class GroupComposition:
     """Robots that sense and that are blinded in the group, and what it may cost by each vector of duals."""
 
     sensing: int
@@ -170,7 +170,7 @@ class LargestGroup:
         return self.sensing + self.blinded
 
 
-def largest_groups(costs: list[LinkCosts], n_blinded: int, size: int) -> list[LargestGroup]:
+def largest_groups(costs: list[LinkCosts], n_blinded: int, size: int) -> list[GroupComposition]:
     """List the groups of fewer than ``size`` sensing robots that can be largest if ``n_blinded`` robots are blinded."""
     n_sensing = len(costs[0].near) - n_blinded
     size = min(size, n_sensing + 1)
@@ -180,7 +180,7 @@ def largest_groups(costs: list[LinkCosts], n_blinded: int, size: int) -> list[La
             others = [table[sensing][n_blinded - blinded] for table in tables]
             limits = [min(one.slack - other, one.most) for one, other in zip(costs, others, strict=True)]
             if all(one.least[sensing + blinded] <= limit for one, limit in zip(costs, limits, strict=True)):
-                found.append(LargestGroup(sensing, blinded, tuple(limits)))
+                found.append(GroupComposition(sensing, blinded, tuple(limits)))
     return found
 
 

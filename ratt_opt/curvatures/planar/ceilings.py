@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.curvatures.planar.contexts import Options
-    from ratt_opt.curvatures.planar.level_program import Relaxed
+    from ratt_opt.curvatures.planar.level_program import RelaxedContext
 
 __all__ = ["ceilings"]
 
@@ -29,7 +29,7 @@ def ceilings(  # noqa: PLR0917
     own_base: FloatArray,
     target: IntArray,
     direction: FloatArray,
-    known: Sequence[Relaxed],
+    known: Sequence[RelaxedContext],
     allowed: BoolArray,
 ) -> FloatArray:
     """(B, S) bounds on ``t - slope own`` over contexts of allowed options, from averages and slopes of ``known``.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.curvatures.planar.level_program import Relaxed
+    from ratt_opt.curvatures.planar.level_program import RelaxedContext
     from ratt_opt.curvatures.planar.regions import MarginalSide
 
 __all__ = ["PlanarSearch"]
@@ -45,12 +45,12 @@ class PlanarSearch:
     ``known`` : what the program found in searches for the same end of other elements; ``found`` : in this one.
     """
 
-    def __init__(self, side: MarginalSide, known: Sequence[Relaxed] = ()) -> None:
+    def __init__(self, side: MarginalSide, known: Sequence[RelaxedContext] = ()) -> None:
         self.side = side
         self.attained = PlanarDescent(side.options, side.prior, side.added, sign=side.sign, rounding=side.rounding)
         self.attained.offer(self.attained.picks)
         self.nodes = 0
-        self.found: list[Relaxed] = []
+        self.found: list[RelaxedContext] = []
         self._last: FloatArray | None = None
         self._open = side.roots()
         side.recycle(self._open, known)
@@ -94,7 +94,7 @@ class PlanarSearch:
         self._open = [region for region in regions if region.key < best]
         self._weakest = min((region.key for region in self._open), default=np.inf)
 
-    def _relax(self, region: Region, aim: float, budget: Budget) -> Relaxed:
+    def _relax(self, region: Region, aim: float, budget: Budget) -> RelaxedContext:
         """Raise a region's bound towards an aim; the last program's solution."""
         self.nodes += 1
         side = self.side
@@ -132,7 +132,7 @@ class PlanarSearch:
         ends = np.append(first[1:], len(weight))
         return np.array([a + int(weight[a:b].argmax()) for a, b in zip(first, ends, strict=True)], dtype=np.int64)
 
-    def _children(self, region: Region, found: Relaxed) -> list[Region]:
+    def _children(self, region: Region, found: RelaxedContext) -> list[Region]:
         """Halve the sector, or one owner's options."""
         side = self.side
         total = side.own_base[:, region.target] + found.mixture @ side.options.parts[:, :, region.target]
@@ -152,7 +152,7 @@ class PlanarSearch:
         side.recycle(halves, [found])
         return halves
 
-    def _spread(self, allowed: BoolArray, found: Relaxed) -> FloatArray:
+    def _spread(self, allowed: BoolArray, found: RelaxedContext) -> FloatArray:
         """(R,) how much the mixture of each owner's options spreads over the binding cuts; -1 with one option."""
         options = self.side.options
         values = np.einsum("kpc,cp->kc", options.parts[:, :, found.cuts.targets], along(found.cuts.angles))
@@ -161,7 +161,7 @@ class PlanarSearch:
         counts = np.add.reduceat(allowed.astype(np.int64), options.first)
         return np.where(counts > 1, np.add.reduceat(square, options.first), -1.0)
 
-    def _divided(self, allowed: BoolArray, found: Relaxed, target: int, owner: int) -> list[BoolArray]:
+    def _divided(self, allowed: BoolArray, found: RelaxedContext, target: int, owner: int) -> list[BoolArray]:
         """Options of an owner that tell a target less than the mixture does, and those that tell more."""
         mine = np.flatnonzero((self.side.options.owners == owner) & allowed)
         order = np.argsort(levels(self.side.options.parts[mine])[:, target], kind="stable")
@@ -174,6 +174,6 @@ class PlanarSearch:
             divided.append(kept)
         return divided
 
-    def _child(self, region: Region, found: Relaxed, allowed: BoolArray, low: float, high: float) -> Region:
+    def _child(self, region: Region, found: RelaxedContext, allowed: BoolArray, low: float, high: float) -> Region:
         added = self.side.extreme_added(region.target, low, high)
         return Region(region.key, region.target, low, high, added, allowed, region.slope, found.average)

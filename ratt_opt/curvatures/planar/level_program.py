@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.curvatures.planar.contexts import Options
 
-__all__ = ["MARGIN", "Cuts", "LevelProgram", "Relaxed", "Sector", "own_direction"]
+__all__ = ["MARGIN", "Cuts", "LevelProgram", "RelaxedContext", "Sector", "own_direction"]
 
 ROUNDS = 12
 """Most times the violated cuts are added for one slope."""
@@ -69,7 +69,7 @@ class Cuts:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Relaxed:
+class RelaxedContext:
     """``ceiling`` is proved; ``mixture`` (K,) attains about that, with ``level`` and ``own``; ``cuts`` bind there.
 
     ``multipliers`` : (C,) of the binding cuts, with sum 1. ``average`` : (3, M) of them: ``t <= <average, total>``.
@@ -173,7 +173,7 @@ class LevelProgram:
         targets = np.flatnonzero(start[0] > SMALLEST_SHARE)
         self._add(targets, np.arctan2(start[2, targets], start[1, targets]))
 
-    def bound(self, slope: float, budget: Budget, enough: float = -np.inf) -> Relaxed:
+    def bound(self, slope: float, budget: Budget, enough: float = -np.inf) -> RelaxedContext:
         """The bound with one slope; ``enough`` : a ceiling low enough to stop at. It holds at every stop."""
         self._program.change_slope(slope)
         for last in [False] * (ROUNDS - 1) + [True]:
@@ -192,7 +192,7 @@ class LevelProgram:
         cuts = Cuts(self._cuts.targets[binding], self._cuts.angles[binding])
         multipliers = weights[EDGES:][binding]
         average = _average(cuts, multipliers, self._base)
-        return Relaxed(highest, mixture, level, own, cuts, multipliers, average, slope)
+        return RelaxedContext(highest, mixture, level, own, cuts, multipliers, average, slope)
 
     def _ceiling(self, weights: FloatArray) -> float:
         """Largest weighted sum of the forms ``constants + scores . z`` over all contexts: each owner's best option."""

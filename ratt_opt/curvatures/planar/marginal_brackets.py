@@ -21,7 +21,7 @@ from ratt_opt.curvatures.planar.regions import MARGIN, MarginalSide
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget, Stop
-    from ratt_opt.curvatures.planar.level_program import Relaxed
+    from ratt_opt.curvatures.planar.level_program import RelaxedContext
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["PlanarBrackets"]
@@ -56,7 +56,7 @@ class PlanarBrackets(MarginalBrackets):
         self._options: dict[int, Options] = {}
         self._highest: dict[int, float] = {}
         self._searches: dict[int, tuple[PlanarSearch, PlanarSearch]] = {}
-        self._pools: tuple[list[Relaxed], list[Relaxed]] = [], []
+        self._pools: tuple[list[RelaxedContext], list[RelaxedContext]] = [], []
 
     def _begin(self) -> Stop | None:
         """Bound every element by the largest smallest-level that any context reaches."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.curvatures.planar.contexts import Options
-    from ratt_opt.curvatures.planar.level_program import Relaxed
+    from ratt_opt.curvatures.planar.level_program import RelaxedContext
 
 __all__ = ["MarginalSide", "Region"]
 
@@ -56,7 +56,7 @@ class Region:
     allowed: BoolArray
     slope: float
     start: FloatArray | None = None
-    relaxed: Relaxed | None = None
+    relaxed: RelaxedContext | None = None
 
 
 class MarginalSide:
@@ -116,7 +116,7 @@ class MarginalSide:
             ends += [(low, high), (-high, -low)]
         return [self._alone(j, low, high) for j in range(len(self._lowest)) for low, high in ends]
 
-    def recycle(self, regions: Sequence[Region], known: Sequence[Relaxed]) -> None:
+    def recycle(self, regions: Sequence[Region], known: Sequence[RelaxedContext]) -> None:
         """Raise the bounds of regions with the same options left, by what the program found elsewhere."""
         if not regions or not known:
             return

@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.criterion_parts import Choices
+    from ratt_opt.setfunctions.criterion_parts import OtherElements
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["BestContext", "ContextSearch", "FloorSearch"]
@@ -35,7 +35,7 @@ MARGIN = 1e-9
 class BestContext:
     """``value`` is the marginal of ``x`` in ``context``, the smallest (or ``largest``) of those offered."""
 
-    def __init__(self, f: InformationObjective, x: int, others: Choices, *, largest: bool = False) -> None:
+    def __init__(self, f: InformationObjective, x: int, others: OtherElements, *, largest: bool = False) -> None:
         self._f, self._x, self._others = f, x, others
         self._sign = -1.0 if largest else 1.0
         self.value = self._sign * np.inf
@@ -92,7 +92,9 @@ class ContextSearch:
     ``nodes`` : parts bounded so far. Once the budget is spent a part gets one tangent, which bounds it as well.
     """
 
-    def __init__(self, f: InformationObjective, x: int, others: Choices, attained: BestContext, budget: Budget) -> None:
+    def __init__(
+        self, f: InformationObjective, x: int, others: OtherElements, attained: BestContext, budget: Budget
+    ) -> None:
         self.attained, self.nodes = attained, 0
         self._f, self._added, self._others, self._budget = f, f.information[x], others, budget
         self._serial = 0
@@ -202,7 +204,7 @@ class FloorSearch:
     nodes = 1
 
     def __init__(
-        self, attained: BestContext, others: Choices, single: FloatArray, floor: float, budget: Budget
+        self, attained: BestContext, others: OtherElements, single: FloatArray, floor: float, budget: Budget
     ) -> None:
         own = np.split(others.elements, others.first[1:])
         best = [int(part[single[part].argmax()]) for part in own if len(part)]

@@ -12,7 +12,7 @@ import numpy as np
 from ratt_opt.curvatures.marginals import MarginalBrackets
 from ratt_opt.curvatures.separable.context_search import BestContext, ContextSearch, FloorSearch
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, eigenvalues
-from ratt_opt.setfunctions.criterion_parts import Choices
+from ratt_opt.setfunctions.criterion_parts import OtherElements
 
 if TYPE_CHECKING:
     from collections.abc import Sized
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget, Stop
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["SeparableBrackets", "choices_beside"]
+__all__ = ["SeparableBrackets", "other_elements"]
 
 WORST_CONDITION = 1e6
 """Information matrices beyond this condition count as singular: their inverse is not trusted to nine digits."""
@@ -38,11 +38,11 @@ class SeparableBrackets(MarginalBrackets):
         self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
     ) -> None:
         super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own)
-        self._choices: dict[int, Choices] = {}
+        self._choices: dict[int, OtherElements] = {}
         self._searches: list[ContextSearch | FloorSearch] = []
         self._largest: dict[int, BestContext] = {}
         self._on_top: dict[int, tuple[int, ...]] = {}
-        self._branches = f.states("marginal_minorant")
+        self._branches = f.overrides("marginal_minorant")
         self.rests_on = "separable minorants" if self._branches else "bounds for all contexts"
 
     def _begin(self) -> Stop | None:
@@ -91,10 +91,10 @@ class SeparableBrackets(MarginalBrackets):
         is_quick = self._f.n * self._f.n_targets <= AT_ONCE
         return self._budget.stop() is not None and (len(searched) > 0 or not is_quick)
 
-    def _beside(self, x: int) -> Choices:
+    def _beside(self, x: int) -> OtherElements:
         owner = int(self._owners[x])
         if owner not in self._choices:
-            self._choices[owner] = choices_beside(self._f, self._owners, owner)
+            self._choices[owner] = other_elements(self._f, self._owners, owner)
         return self._choices[owner]
 
     def _refine(self, x: int, target: float) -> None:  # noqa: ARG002  (a minorant has no aim)
@@ -143,14 +143,14 @@ def _inverses(information: FloatArray) -> tuple[BoolArray, FloatArray]:
     return regular, inverse
 
 
-def choices_beside(f: InformationObjective, owners: IntArray, owner: int) -> Choices:
+def other_elements(f: InformationObjective, owners: IntArray, owner: int) -> OtherElements:
     """The elements of the other owners, owner by owner."""
     groups = [np.flatnonzero(owners == i) for i in np.unique(owners) if i != owner]
     elements = np.concatenate([*groups, np.array([], dtype=np.int64)])
     sizes = np.array([len(own) for own in groups], dtype=np.int64)
     information = f.information[elements]
     regular, inverse = _inverses(information)
-    return Choices(
+    return OtherElements(
         elements=elements,
         owners=np.repeat(np.arange(len(sizes)), sizes),
         first=np.cumsum(sizes) - sizes,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Cooling", "Network", "annealed_cut"]
+__all__ = ["Cooling", "PricedArcs", "annealed_cut"]
 
 HOT, COLD, OVERSIZE = 3.0, 0.15, 2.0
 """Temperatures and the price of a robot too many in a group, in links; a robot's mean number of links and half as many
@@ -64,7 +64,7 @@ def _cut_below(threat: Threat, size: int, budget: Budget, ignoring: Collection[i
     """A cut within the budget that leaves groups of at most ``size`` robots that count, if a few coolings find one."""
     n_robots = threat.graph.n_robots
     counts = np.array([i not in ignoring for i in range(n_robots)], dtype=np.int64)
-    network, rng, fewest = Network.of(threat), np.random.default_rng(size), -(-int(counts.sum()) // size)
+    network, rng, fewest = PricedArcs.of(threat), np.random.default_rng(size), -(-int(counts.sum()) // size)
     for count in dict.fromkeys(fewest + round(share * fewest) for share in SPARE_GROUPS):
         cooling = Cooling(network, counts, rng.integers(0, count, n_robots), count, size, rng)
         within, moves = threat.alpha_c + 1, MOVES * n_robots
@@ -78,7 +78,7 @@ def _cut_below(threat: Threat, size: int, budget: Budget, ignoring: Collection[i
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Network:
+class PricedArcs:
     """``start`` : (N + 1,) of each robot's arcs; ``robot``, ``price`` : (2 E,) an arc's other end, and its cut's."""
 
     start: IntArray
@@ -86,7 +86,7 @@ class Network:
     price: IntArray
 
     @classmethod
-    def of(cls, threat: Threat) -> Network:
+    def of(cls, threat: Threat) -> PricedArcs:
         """A protected link costs more than all links."""
         links = sorted(threat.graph.links)
         price = [len(links) + 1 if link in threat.protected_links else 1 for link in links]
@@ -94,7 +94,7 @@ class Network:
         return cls.weighted(ends, np.array(price, dtype=np.int64), threat.graph.n_robots)
 
     @classmethod
-    def weighted(cls, ends: IntArray, price: IntArray, n_robots: int) -> Network:
+    def weighted(cls, ends: IntArray, price: IntArray, n_robots: int) -> PricedArcs:
         """``ends`` : (E, 2); ``price`` : (E,) of cutting each."""
         arcs = np.concatenate([ends, ends[:, ::-1]])
         order = np.lexsort(arcs.T[::-1])
@@ -114,7 +114,7 @@ class Cooling:
 
     def __init__(  # noqa: PLR0917
         self,
-        network: Network,
+        network: PricedArcs,
         counts: IntArray,
         group: IntArray,
         count: int,

@@ -17,7 +17,7 @@ from stonesoup.types.track import Track
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.errors import InputError
 from ratt_opt.interop.stonesoup.nodes import TeamManager, nodes_of, options
-from ratt_opt.interop.stonesoup.problem import Step, TeamProblem
+from ratt_opt.interop.stonesoup.problem import PlanningStep, TeamProblem
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -51,7 +51,7 @@ class CriterionReward(RewardFunction, TeamProblem):
         value = self._value(step)
         return (value, _updated(step)) if self.return_tracks else value
 
-    def _value(self, step: Step) -> float:
+    def _value(self, step: PlanningStep) -> float:
         everyone = range(step.problem.n_robots)
         if self.alpha_s == self.alpha_c == 0:
             return float(step.problem.objective(everyone))
@@ -62,7 +62,7 @@ def _option(config: Mapping[Any, Sequence[Any]], actionable: Any) -> Any:
     return tuple(config[actionable]) if actionable in config else None
 
 
-def _updated(step: Step) -> set[Any]:
+def _updated(step: PlanningStep) -> set[Any]:
     """The tracks after measurements as predicted: the means stay, the covariances shrink."""
     forecast, told = step.forecast, step.problem.information_objective.information.sum(axis=0)
     found = set()

@@ -9,7 +9,7 @@ from stonesoup.base import Property
 from ratt_opt.certificates.write import certify
 from ratt_opt.errors import InputError
 from ratt_opt.interop.stonesoup.nodes import TeamManager, default_option, options
-from ratt_opt.interop.stonesoup.problem import Step, TeamProblem
+from ratt_opt.interop.stonesoup.problem import PlanningStep, TeamProblem
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
 from ratt_opt.solvers.ratt import ratt
 from ratt_opt.solvers.refined import refined
@@ -51,7 +51,7 @@ class RobustSensorManager(TeamManager, TeamProblem):
             raise InputError("method", f"must be {', '.join(METHODS[:-1])} or {METHODS[-1]}", self.method)
         if self.proof is not None and self.method != "maxmin":
             raise InputError("proof", "needs method='maxmin'", self.method)
-        self.last_step: Step | None = None
+        self.last_step: PlanningStep | None = None
         self.last_result: Plan | MaxMinResult | None = None
         self.last_certificate: Certificate | None = None
         self._steps = 0

@@ -16,7 +16,7 @@ from ratt_opt.interop.stonesoup.network import Network
 from ratt_opt.interop.stonesoup.nodes import title
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.information_input import InformationInput
-from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, criterion_called
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, get_criterion
 from ratt_opt.solvers.undominated import UndominatedProblem, undominated
 
 if TYPE_CHECKING:
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
     from ratt_opt.interop.stonesoup.nodes import Node
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Step", "TeamProblem"]
+__all__ = ["PlanningStep", "TeamProblem"]
 
 DIGITS = 1e-12
 """Information that differs by less than this share of its largest entry is the same; the first action is kept."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class PlanningStep:
     """One step's ``problem``, and which of a node's combinations each element is (``combination``, (E,)).
 
     ``coordinates`` : of each track, those of its state that count; ``notes`` : how sensors are linearised
@@ -105,7 +105,9 @@ class TeamProblem(Base):
     alpha_s: int = Property(default=0, doc="Number of platforms, or sensors that stand alone, blinded at once.")
     alpha_c: int = Property(default=0, doc="Number of links cut at once.")
 
-    def step(self, nodes: tuple[Node, ...], choices: tuple[Choices, ...], tracks: Any, timestamp: datetime) -> Step:
+    def step(
+        self, nodes: tuple[Node, ...], choices: tuple[Choices, ...], tracks: Any, timestamp: datetime
+    ) -> PlanningStep:
         """The problem of these choices in the coordinates that are measured, without elements that no plan needs.
 
         Raises
@@ -129,14 +131,14 @@ class TeamProblem(Base):
         robot = np.repeat(np.arange(len(told)), list(map(len, firsts)))
         kept = undominated(Problem(objective, robot, network.graph, self.alpha_s, self.alpha_c))
         combination, notes = np.concatenate(firsts)[kept.kept], notes_of(nodes, self.updater)
-        return Step(kept, nodes, network.relays, choices, combination, forecast, rows, notes)
+        return PlanningStep(kept, nodes, network.relays, choices, combination, forecast, rows, notes)
 
 
 def _objective(
     criterion: str, prior: FloatArray, information: FloatArray, rows: tuple[IntArray, ...], counted: Any
 ) -> InformationObjective:
     """The criterion of the coordinates that count, ``None`` for all of ``rows``."""
-    kind = criterion_called(criterion)
+    kind = get_criterion(criterion)
     if counted is None or all(len(own) == len(counted) for own in rows):
         return kind(prior, information)
     if criterion not in WITH_OUTPUT:

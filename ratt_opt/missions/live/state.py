@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite, check_integer, check_number, readonly
-from ratt_opt._values import ByValue, Shown
+from ratt_opt._values import ByValue, ReprMixin
 from ratt_opt.errors import InputError
 from ratt_opt.missions.belief import Belief
 from ratt_opt.problem import Attack
@@ -82,7 +82,7 @@ class Moment(ByValue):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TrackerState(ByValue, Shown):
+class TrackerState(ByValue, ReprMixin):
     """The whole state of a tracker: ``time`` [s] since it began, and the caller's clock ``now`` [s] if there was one.
 
     ``poses`` : (N, 3) expected at the next measurements; ``moments`` : times of which late measurements are still taken

@@ -24,7 +24,7 @@ from ratt_opt.missions.live.packets import PacketError, Skipped, TrackerPlan
 from ratt_opt.missions.live.roster import threat, with_attack, with_target, without_robot, without_target
 from ratt_opt.missions.live.state import Moment, TrackerState
 from ratt_opt.missions.planning import offered_sequences, part_problem, planner_world
-from ratt_opt.missions.players.planners import planner_called
+from ratt_opt.missions.players.planners import get_planner
 from ratt_opt.missions.world import MissionModel, World
 from ratt_opt.scenario.planner_world import Now
 from ratt_opt.scenario.record import LARGEST
@@ -113,7 +113,7 @@ class Tracker:
         self.world = World(scenario, model or MissionModel(), horizon)
         self.lag, self.skew = Reception(lag, skew).seconds(self.world.period)
         self.gate, self.strict = gate_of(gate), strict
-        self._plan = InTime(planner_called(planner), time_limit)
+        self._plan = InTime(get_planner(planner), time_limit)
         self.state = self._start() if state is None else self._checked(state)
         self.controls: FloatArray = readonly(self.state.controls[:, 0])
 

@@ -9,7 +9,7 @@ from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, random_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
-from ratt_opt.missions.players.named import player_called
+from ratt_opt.missions.players.named import get_player
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Attacker = Callable[[Problem, IntArray, int], Attack | AttackResult]
     OwnAttacker = Callable[[Problem, IntArray], Attack | AttackResult]
 
-__all__ = ["ATTACKERS", "attack_of", "attacker_called"]
+__all__ = ["ATTACKERS", "attack_of", "get_attacker"]
 
 NODES = 500_000
 """Nodes of a worst case on a graph that is not complete, beyond what is exact at once: some ten seconds a step.
@@ -44,14 +44,14 @@ ATTACKERS: dict[str, Attacker] = {
 """Called with the problem, the plan and a seed of the step."""
 
 
-def attacker_called(attacker: str | OwnAttacker) -> Attacker:
+def get_attacker(attacker: str | OwnAttacker) -> Attacker:
     """The attacker of that name, or the given one, called with problem and plan.
 
     InputError : there is none of that name, or it cannot be called.
     """
     if callable(attacker):
         return lambda problem, plan, _seed: attacker(problem, plan)
-    return player_called("attacker", attacker, ATTACKERS)
+    return get_player("attacker", attacker, ATTACKERS)
 
 
 def attack_of(found: Attack | AttackResult, problem: Problem) -> Attack:

@@ -11,13 +11,13 @@ from ratt_opt.vocabulary import current_name
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = ["name_of", "player_called"]
+__all__ = ["get_player", "name_of"]
 
 Player = TypeVar("Player")
 Own = TypeVar("Own", bound="Callable[..., object]")
 
 
-def player_called(role: str, given: str | Own, known: Mapping[str, Player]) -> Player | Own:
+def get_player(role: str, given: str | Own, known: Mapping[str, Player]) -> Player | Own:
     """The player of that name in ``known``, or the given one. InputError : there is none, or it cannot be called."""
     given = current_name(role, given, stacklevel=5)
     if isinstance(given, str) and given in known:

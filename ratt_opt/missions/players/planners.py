@@ -11,7 +11,7 @@ import numpy as np
 from ratt_opt._validation import IntArray, check_integer
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
-from ratt_opt.missions.players.named import player_called
+from ratt_opt.missions.players.named import get_player
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.solvers.refined import RefinedPlan, refined
@@ -34,8 +34,8 @@ __all__ = [
     "RandomPlanner",
     "RefinedPlanner",
     "elements_of",
+    "get_planner",
     "planned_with",
-    "planner_called",
 ]
 
 
@@ -107,9 +107,9 @@ PLANNERS: dict[str, Planner] = {
 }
 
 
-def planner_called(planner: str | Planner) -> Planner:
+def get_planner(planner: str | Planner) -> Planner:
     """The planner of that name, or the given one. InputError : there is none, or it cannot be called."""
-    return player_called("planner", planner, PLANNERS)
+    return get_player("planner", planner, PLANNERS)
 
 
 def planned_with(planner: Planner, problem: Problem, world: PlannerWorld | None) -> Planned:

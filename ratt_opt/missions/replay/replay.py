@@ -14,7 +14,7 @@ from ratt_opt.missions.belief import Belief
 from ratt_opt.missions.memory import Memory, Pieces
 from ratt_opt.missions.planning import capped
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
-from ratt_opt.missions.players.attackers import attack_of, attacker_called
+from ratt_opt.missions.players.attackers import attack_of, get_attacker
 from ratt_opt.missions.replay.cameras import camera_planner
 from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor
 from ratt_opt.missions.sensing import Reading, group_pieces
@@ -154,7 +154,7 @@ def replay_mrclam(
     flight = _Replay(data, s, sensor)
     if steps > float(min(poses[-1, 0] for poses in data.poses) - flight.begin) / s.period:
         raise InputError("steps", "must end before the poses do", steps)
-    choose, attack, model = camera_planner(planner), attacker_called(attacker), attack_model(attacks)
+    choose, attack, model = camera_planner(planner), get_attacker(attacker), attack_model(attacks)
     for step in range(steps):
         problem = flight.problem(step, model)
         running = problem.check_plan(choose(problem, s.cameras, s.seed + step))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._values import ByValue
 from ratt_opt.errors import InputError
-from ratt_opt.scenario.own_sensors import tells_itself
+from ratt_opt.scenario.own_sensors import states_information
 from ratt_opt.scenario.sensor import Sensor, jacobian, measure, variances_of
 from ratt_opt.scenario.sensors.model import SensorModel
 from ratt_opt.scenario.sensors.own_information import stated_information, stated_weights
@@ -35,7 +35,7 @@ class RangeBearing(ByValue, SensorModel):
     angles: ClassVar[tuple[int, ...]] = (1,)
 
     def __post_init__(self) -> None:
-        if self.size == 1 and tells_itself(self.sensor):
+        if self.size == 1 and states_information(self.sensor):
             rule = "must not state its own information, which is that of a range and a bearing together"
             raise InputError("sensor", rule, type(self.sensor).__name__)
 
@@ -69,7 +69,7 @@ class RangeBearing(ByValue, SensorModel):
         measured: FloatArray | None = None,
     ) -> FloatArray:
         """(..., 2, 2); of a sensor that states its information, what that says."""
-        if not tells_itself(self.sensor):
+        if not states_information(self.sensor):
             return super().weights(poses, points, added)
         told = stated_weights(self.sensor, poses, points)
         if measured is not None:  # a sighting shows that the target is in reach, if not where it was expected
@@ -81,7 +81,7 @@ class RangeBearing(ByValue, SensorModel):
 
     def disturbance(self, poses: FloatArray, points: FloatArray, luck: FloatArray) -> FloatArray:
         """(..., 2); of a sensor that states its information, with the covariance that it implies."""
-        if not tells_itself(self.sensor):
+        if not states_information(self.sensor):
             return super().disturbance(poses, points, luck)
         values, vectors = np.linalg.eigh(self.weights(poses, points))
         scale = np.where(values > SILENT * values[..., -1:], 1 / np.sqrt(np.maximum(values, np.finfo(float).tiny)), 0.0)
@@ -108,7 +108,7 @@ class RangeBearing(ByValue, SensorModel):
         """Within the range and the field of view, and not without information."""
         measured = measure(poses, points)
         seen = self.sensor.sees(measured[..., 0], measured[..., 1])
-        if not tells_itself(self.sensor):
+        if not states_information(self.sensor):
             return seen
         return np.asarray(seen & stated_information(self.sensor, poses, points).any(axis=(-1, -2)))
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import FloatArray
-    from ratt_opt.setfunctions.criterion_parts import Choices
+    from ratt_opt.setfunctions.criterion_parts import OtherElements
 
 __all__ = ["LogDetObjective"]
 
@@ -97,7 +97,7 @@ class LogDetObjective(InformationObjective):
         """``Y = L^{-1}`` of every target, packed."""
         return packed(symmetric_inverse(point))
 
-    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
+    def marginal_minorant(self, added: FloatArray, others: OtherElements, share: FloatArray) -> SeparableMinorant:
         """The tangent at the relaxed context: exact there."""
         posterior = self.prior_information + others.mixed(share)
         both = posterior + added

@@ -13,7 +13,7 @@ from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective, TraceObje
 if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["CERTIFIED", "CRITERIA", "WITH_OUTPUT", "criterion_called"]
+__all__ = ["CERTIFIED", "CRITERIA", "WITH_OUTPUT", "get_criterion"]
 
 CRITERIA: dict[str, type[InformationObjective]] = {
     name: getattr(import_module(f"ratt_opt.setfunctions.criteria.{name}"), kind) for name, kind in CLASSES.items()
@@ -33,7 +33,7 @@ WITH_OUTPUT: dict[str, type[TraceObjective | MaxEigenvalueObjective]] = {
 """Criteria that support a part of the state, ``output=C``, by name."""
 
 
-def criterion_called(name: str) -> type[InformationObjective]:
+def get_criterion(name: str) -> type[InformationObjective]:
     """The criterion of that name. InputError : there is none."""
     if name not in CRITERIA:
         *names, last = CRITERIA

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.setfunctions.criterion_parts import Choices
+    from ratt_opt.setfunctions.criterion_parts import OtherElements
 
 __all__ = ["TraceObjective"]
 
@@ -157,7 +157,7 @@ class TraceObjective(StateCriterion):
         """(M, d, d) ``W = C'C``; the identity if the whole state counts."""
         return np.broadcast_to(np.eye(self.dimension), self.prior.shape)
 
-    def marginal_minorant(self, added: FloatArray, others: Choices, share: FloatArray) -> SeparableMinorant:
+    def marginal_minorant(self, added: FloatArray, others: OtherElements, share: FloatArray) -> SeparableMinorant:
         """The tangent in ``P`` at the relaxed context, its rising part made linear, its falling part by owners."""
         posterior = self.prior_information + others.mixed(share)
         covariance, after = symmetric_inverse(posterior), symmetric_inverse(posterior + added)
@@ -178,7 +178,7 @@ class TraceObjective(StateCriterion):
         return SeparableMinorant(float(constant) - upper.constant, score + upper.score, upper.absent)
 
     def _inverse_majorant(
-        self, others: Choices, share: FloatArray, axes: FloatArray, strength: FloatArray
+        self, others: OtherElements, share: FloatArray, axes: FloatArray, strength: FloatArray
     ) -> SeparableMinorant:
         """``sum_jk strength[j, k] n_jk' L^{-1} n_jk <= constant + sum of scores``, ``n_jk`` the columns of ``axes``."""
         weighted = share[:, None] * others.regular

@@ -89,7 +89,7 @@ def test_many_lone_robots_are_no_recursion():
     n = 990
     about = stated_in(document(n, [], 0, None))
     found = duals.Duals(Cases(about, Worth(about, fmpq(2, 5))), {"link": 1, "robots": [0] * n, "blinded": 0})
-    found._listed = {1 << i: duals.Listed(1 << i, 0, 0, 0) for i in range(n)}
+    found._listed = {1 << i: duals.ListedGroup(1 << i, 0, 0, 0) for i in range(n)}
     with pytest.raises(ProofError, match="partition the team"):
         duals.check_partition(found, list(range(n)))
     with pytest.raises(ProofError, match="a case has no leaf"):

@@ -10,7 +10,7 @@ from ratt_opt import InputError
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.largest_group import annealed_cut as module
-from ratt_opt.graph.largest_group.annealed_cut import Cooling, Network, annealed_cut
+from ratt_opt.graph.largest_group.annealed_cut import Cooling, PricedArcs, annealed_cut
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.threat import Threat
 
@@ -83,7 +83,7 @@ def test_a_cooling_makes_the_moves_of_the_definition(seed):
     expected = plainly_cooled(
         n_robots, links, prices, counts, group.tolist(), labels, size, np.random.default_rng(seed), 200, oversize
     )
-    cooling = Cooling(Network.of(threat), counts, group, labels, size, np.random.default_rng(seed))
+    cooling = Cooling(PricedArcs.of(threat), counts, group, labels, size, np.random.default_rng(seed))
     fewest = 10
     for first, last in ([(0, 200)], [(0, 1), (1, 50), (50, 50), (50, 200)])[seed % 2]:
         fewest = cooling.run(first, last, 200, fewest)
@@ -92,7 +92,7 @@ def test_a_cooling_makes_the_moves_of_the_definition(seed):
 
 def test_what_c_may_not_read_is_refused():
     threat = Threat(CommunicationGraph(3, frozenset({(0, 1), (1, 2)})), 0, 1)
-    network, counts, group = Network.of(threat), np.ones(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
+    network, counts, group = PricedArcs.of(threat), np.ones(3, dtype=np.int64), np.zeros(3, dtype=np.int64)
     rng, locked = np.random.default_rng(0), np.zeros(3, dtype=np.int64)
     locked.setflags(write=False)
     Cooling(network, counts, group, 2, 1, rng)

@@ -11,7 +11,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attack.team import Team
-from ratt_opt.setfunctions.criteria.registry import CRITERIA, criterion_called
+from ratt_opt.setfunctions.criteria.registry import CRITERIA, get_criterion
 from ratt_opt.setfunctions.criterion_parts import OPTIONAL_PARTS, CriterionParts
 from ratt_opt.setfunctions.information import InformationObjective, from_triangles, triangles
 from tests.strategies import OBJECTIVES, information_data
@@ -118,8 +118,8 @@ def test_parts_are_inherited_with_the_formula_they_belong_to_and_not_without_it(
         assert getattr(Other, part) is getattr(CriterionParts, part)
         assert part == "is_submodular" or getattr(Stated, part) is getattr(CriterionParts, part)
     assert Stated.is_submodular
-    assert not Other.states("marginal_minorant")
-    assert Renamed.states("marginal_minorant")
+    assert not Other.overrides("marginal_minorant")
+    assert Renamed.overrides("marginal_minorant")
 
 
 def test_what_is_missing_is_refused_by_its_name():
@@ -141,7 +141,7 @@ def test_what_is_missing_is_refused_by_its_name():
     with pytest.raises(ro.InputError, match=r"must define gradient\(posterior_information\).*got ValueAlone"):
         f.tangent(f.prior_information, None)
     with pytest.raises(ro.InputError, match="objective must be trace, logdet or maxeig"):
-        criterion_called("squares")
+        get_criterion("squares")
 
 
 @pytest.mark.parametrize("criterion", ALL[:3])

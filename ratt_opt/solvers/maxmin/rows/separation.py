@@ -54,7 +54,7 @@ class RowSeparation:
         """
         params = RowParams() if params is None else params
         unseen = 1 - task.objective.information.any(axis=(-2, -1)).mean()
-        return task.objective.states("target_tangents") and bool(unseen >= params.unseen)
+        return task.objective.overrides("target_tangents") and bool(unseen >= params.unseen)
 
     @staticmethod
     def first_node(task: Task, params: RowParams | None = None) -> float:
