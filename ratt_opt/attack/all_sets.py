@@ -62,7 +62,7 @@ def can_enumerate_subsets(task: AttackTask) -> bool:
     n_robots, f = task.problem.n_robots, task.problem.objective
     if not has_native_kernel(f):
         return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
-    is_soon = work_of_value(f.n_targets, f.dimension) * 2.0**n_robots <= MOST_WORK
+    is_soon = work_of_value(f) * 2.0**n_robots <= MOST_WORK
     return n_robots <= LARGEST_VALUED or (is_soon and n_robots <= LARGEST_ENUMERATED)
 
 

@@ -12,14 +12,14 @@ from __future__ import annotations
 from ctypes import byref, c_int64
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.team import KEPT_LINKS, Links, Team
+from ratt_opt.attack.team import KEPT_LINKS, WORK, Links, Team
 from ratt_opt.native.library import address, address_of
 from ratt_opt.native.loops import PricingRecord, loops
+from ratt_opt.running.pace import Pace, PaceParams
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,12 +37,13 @@ __all__ = ["BLINDED", "UNIT", "DualPrices", "GroupSearch", "PricedGroup", "Prici
 UNIT = 1 << 20
 """Unit of integer duals: one link that leaves a group."""
 MOST_PAIRED = 100
-"""Robots of a team whose pairs are compared: for larger ones levels of single robots bound sets."""
+"""Robots of a team whose pairs are compared, if that is no more than ``WORK.pairs``: else levels of single robots bound
+sets."""
 EFFORT, EFFORT_WORK = 200_000, 50_000_000
 """Robots valued at most to decide what a group needs, and multiplications for it: less than a tenth of a second."""
 FINISHED = 0
-FIRST_CHUNK, GLANCE = 500, 0.02
-"""Nodes before the first look at the clock, and seconds between two looks that chunks are cut for."""
+NODES = PaceParams(first=2**3, most=2**20)
+"""Nodes of a search for groups in one call."""
 BLINDED = 2
 """State of a robot towards a group; 1 is sensing, 0 outside."""
 
@@ -52,7 +53,7 @@ class PricingProblem:
 
     def __init__(self, team: Team, links: Links, threat: Threat) -> None:
         self.team, self.links, self.threat = team, links, threat
-        self.robots = team.robots
+        self.robots, self.pace = team.robots, Pace(NODES)
         self.least_cuts = _least_cuts(threat)
 
     @classmethod
@@ -65,7 +66,7 @@ class PricingProblem:
     def tables(self) -> tuple[FloatArray, NDArray[np.int32], NDArray[np.uint8]] | None:
         """Levels of copies of two robots, the other robots by these, and which sizes are filled."""
         robots = self.robots
-        if robots > MOST_PAIRED:
+        if robots > MOST_PAIRED or robots**2 * self.team.work > WORK.pairs:
             return None
         shape = robots + 1, robots, robots
         return np.zeros(shape), np.zeros(shape, np.int32), np.zeros(robots + 1, np.uint8)
@@ -222,13 +223,14 @@ class GroupSearch:
         OutOfBudget : the time is up.
         """
         table, is_complete = (np.zeros((room, self._plan.robots), np.int8), np.zeros((room, 4), np.int64)), False
-        stop, chunk, count = self.nodes + budget.nodes_left(nodes), FIRST_CHUNK, 0
+        stop, pace, count = self.nodes + budget.nodes_left(nodes), self._plan.pace, 0
         while self.nodes < stop and count < room and not is_complete:
             budget.check()
-            before, began = self.nodes, monotonic()
-            count, is_complete = self._fill(min(chunk, stop - before), table, count)
+            before = self.nodes
+            units = min(pace.units, stop - before)
+            with pace.timed(units):
+                count, is_complete = self._fill(units, table, count)
             budget.nodes += self.nodes - before
-            chunk = 2 * chunk if monotonic() - began < GLANCE else max(chunk // 2, 1)
         rows = zip(table[0][:count], table[1][:count].tolist(), strict=True)
         columns = [
             PricedGroup(robots=part > 0, blinded=part == BLINDED, need=need, found=found, cost=cost)

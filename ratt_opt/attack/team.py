@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard
@@ -14,16 +15,18 @@ from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import TeamRecord, loops
 from ratt_opt.running.pace import Pace, PaceParams
 from ratt_opt.setfunctions.base import IMPROVEMENT
+from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.information import InformationObjective, triangles
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.graph.communication import CommunicationGraph
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "Links", "Team", "has_native_kernel", "work_of_value"]
+__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "WORK", "Links", "Team", "has_native_kernel", "work_of_value"]
 
 MOST_ROBOTS = 32
 """Largest team whose subsets fit 32-bit masks; a team may have more robots."""
@@ -31,6 +34,9 @@ MOST_TABULATED = 16
 """Largest team whose subsets are all valued in one call."""
 EXCHANGES = PaceParams(first=2**12, most=2**26)
 """Pairs of robots that exchanges try in one call."""
+PARTIAL_SETS = PaceParams(first=2**3)
+"""Partial sets that a search of sets looks at in one call; the largest eigenvalue of six coordinates takes 500 times as
+long as a trace of two."""
 LARGEST_DIMENSION = 64
 """Largest dimension of states in the compiled code."""
 PLANE = 2
@@ -44,9 +50,27 @@ def has_native_kernel(objective: SetFunction) -> TypeGuard[InformationObjective]
     return objective.compiled_code is not None and objective.dimension <= LARGEST_DIMENSION
 
 
-def work_of_value(targets: int, dimension: int) -> int:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkParams:
+    """Cost of steps, in about multiplications (half a nanosecond each); work between two looks at the clock.
+
+    ``rotations`` : times as long as a trace that a largest eigenvalue takes in more than two dimensions
+    ``pairs`` : for the levels of all pairs in sets of one size, at most: more bounds sets of larger teams and states
+        better, less is met sooner by a limit or an interrupt
+    """
+
+    rotations: int = 8
+    pairs: float = 1e8
+
+
+WORK = WorkParams()
+
+
+def work_of_value(objective: InformationObjective) -> int:
     """Estimate the multiplications for one value of a set of robots."""
-    return targets * dimension**3
+    d = objective.dimension
+    by_rotations = d > PLANE and objective.compiled_code == MaxEigenvalueObjective.compiled_code
+    return objective.n_targets * d**3 * (WORK.rotations if by_rotations else 1)
 
 
 class Team:
@@ -83,7 +107,7 @@ class Team:
             relative=IMPROVEMENT.relative,
             rounding=objective.rounding,
         )
-        self.pace = Pace(EXCHANGES)
+        self.pace, self.set_pace = Pace(EXCHANGES), Pace(PARTIAL_SETS)
         loops.criteria_before(self.record, address(self._before))
 
     @classmethod
@@ -148,7 +172,7 @@ class Team:
     @property
     def work(self) -> int:
         """Estimated multiplications for one value."""
-        return work_of_value(self.record.targets, self.record.dimension)
+        return work_of_value(self.objective)
 
 
 class Links(NamedTuple):
@@ -177,20 +201,28 @@ KEPT_LINKS = 8
 @lru_cache(maxsize=KEPT_LINKS)
 def _links_of(threat: Threat) -> Links:
     n_robots = threat.graph.n_robots
-    pairs, fixed = (_as_pairs(links) for links in (threat.graph.links, threat.protected_links))
-    tails, heads = np.concatenate([pairs, pairs[:, ::-1]]).T
-    arcs = np.sort(tails * n_robots + heads)
-    tails, heads = arcs // n_robots, arcs % n_robots
+    tails, heads = np.divmod(_arcs(threat.graph), n_robots)
+    fixed = _numbers(threat.protected_links, n_robots)
     arrays = (
         np.searchsorted(tails, np.arange(n_robots + 1)).astype(np.int64),
-        heads.astype(np.int64),
-        np.searchsorted(arcs, heads * n_robots + tails).astype(np.int64),
-        np.isin(np.minimum(tails, heads) * n_robots + np.maximum(tails, heads), fixed[:, 0] * n_robots + fixed[:, 1]),
+        heads,
+        np.argsort(heads, kind="stable").astype(np.int64),  # arcs by head, then tail: those of the way back, in order
+        np.isin(np.minimum(tails, heads) * n_robots + np.maximum(tails, heads), fixed),
         np.isin(np.arange(n_robots), list(threat.protected_robots)),
     )
     return Links(*map(readonly, arrays))
 
 
-def _as_pairs(links: Iterable[tuple[int, int]]) -> IntArray:
-    """(L, 2) ends of links."""
-    return np.fromiter(chain.from_iterable(links), dtype=np.int64).reshape(-1, 2)
+def _arcs(graph: CommunicationGraph) -> IntArray:
+    """(A,) ``tail * N + head`` of all arcs, ascending."""
+    if graph.is_complete:  # half a million links are slow to read one by one
+        return np.flatnonzero(~np.eye(graph.n_robots, dtype=np.bool_))
+    links = _numbers(graph.links, graph.n_robots)
+    heads, tails = np.divmod(links, graph.n_robots)
+    return np.sort(np.concatenate([links, tails * graph.n_robots + heads]))
+
+
+def _numbers(links: Iterable[tuple[int, int]], n_robots: int) -> IntArray:
+    """(L,) ``i * N + j`` of links ``(i, j)``."""
+    ends = np.fromiter(chain.from_iterable(links), dtype=np.int64).reshape(-1, 2)
+    return np.asarray(ends[:, 0] * n_robots + ends[:, 1])

@@ -85,7 +85,9 @@ class ChangedProblem(Problem):
     @cached_property
     def evaluation_error(self) -> float:
         """Evaluation error as of any problem, against the exact values of ``whole``."""
-        return evaluation_error(self.information_objective, self.choices) + self.change_error
+        known = self.whole.evaluation_error if not self.is_changed else None
+        own = evaluation_error(self.information_objective, self.choices) if known is None else known
+        return own + self.change_error
 
     @property
     def least_value(self) -> float:

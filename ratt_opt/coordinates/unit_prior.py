@@ -12,7 +12,9 @@ Information is given as ``G G'``: what is negative in it, by rounding, is left o
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -25,7 +27,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
+    from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["with_unit_prior"]
 
@@ -49,22 +51,64 @@ def with_unit_prior(problem: AnyProblem) -> AnyProblem | ChangedProblem:
     return found
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Change:
+    """A criterion in other coordinates ``basis[j]' x`` of targets; the same for all problems with these owners.
+
+    ``before`` : by how much exact values had changed before, ``error`` : by how much they do now
+    ``objective`` : ``None`` if the coordinates stay
+    """
+
+    robot: IntArray
+    before: float
+    objective: InformationObjective | None = None
+    basis: FloatArray | None = None
+    error: float = 0.0
+
+    def is_for(self, problem: Problem) -> bool:
+        """Tell whether the change is the one of a problem with the same criterion."""
+        return self.before == getattr(problem, "change_error", 0.0) and np.array_equal(self.robot, problem.robot)
+
+    def of(self, problem: Problem) -> Problem:
+        """The problem in these coordinates."""
+        if self.objective is None or self.basis is None:
+            return problem
+        if isinstance(problem, ChangedProblem):
+            error = problem.change_error + self.error
+            return ChangedProblem.of(problem.whole, self.objective, problem.basis @ self.basis, error)
+        return ChangedProblem.of(problem, self.objective, self.basis, self.error)
+
+
 def _chosen(problem: Problem) -> Problem:
     objective = problem.objective
     if not isinstance(objective, InformationObjective):
         return problem
+    change = _CHANGES.get(objective)
+    if change is None or not change.is_for(problem):
+        change = _CHANGES[objective] = _change(problem, objective)
+    return change.of(problem)
+
+
+_CHANGES: WeakKeyDictionary[InformationObjective, _Change] = WeakKeyDictionary()
+"""Problems that differ in their threats share a change of coordinates: one of many elements takes a second."""
+
+
+def _change(problem: Problem, objective: InformationObjective) -> _Change:
     scale = objective.error_scale(sizes_of(objective.prior))
+    stay = _Change(robot=problem.robot, before=getattr(problem, "change_error", 0.0))
     if scale is None or problem.evaluation_error <= TOLERABLE * float(objective.combine(scale)):
-        return problem
-    changed = _changed(problem, objective)
-    return changed if changed.evaluation_error <= WORTHWHILE * problem.evaluation_error else problem
-
-
-def _changed(problem: Problem, objective: InformationObjective) -> ChangedProblem:
+        return stay
     root: FloatArray = np.asarray(np.linalg.cholesky(objective.prior), dtype=np.float64)
-    turned = np.swapaxes(root, -1, -2)
+    changed = _changed(objective, root)
+    basis = np.asarray(np.linalg.inv(np.swapaxes(root, -1, -2)))
+    change = replace(stay, objective=changed, basis=basis, error=_error(problem, objective, changed, root))
+    return change if change.of(problem).evaluation_error <= WORTHWHILE * problem.evaluation_error else stay
+
+
+def _changed(objective: InformationObjective, root: FloatArray) -> InformationObjective:
+    """The criterion in the coordinates ``root^{-1} x``."""
     values, vectors = np.linalg.eigh(objective.information)
-    factor = turned @ (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
+    factor = np.swapaxes(root, -1, -2) @ (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
     information = factor @ np.swapaxes(factor, -1, -2)
     prior = np.broadcast_to(np.eye(objective.dimension), objective.prior.shape)
     part: dict[str, FloatArray] = {}
@@ -72,11 +116,8 @@ def _changed(problem: Problem, objective: InformationObjective) -> ChangedProble
     if kind is not LogDetObjective:
         given = getattr(objective, "output", None)
         part["output"] = root if given is None else given @ root
-    changed = kind(prior, information, objective.weights, **part)
-    basis, error = np.linalg.inv(turned), _error(problem, objective, changed, root)
-    if isinstance(problem, ChangedProblem):
-        return ChangedProblem.of(problem.whole, changed, problem.basis @ basis, problem.change_error + error)
-    return ChangedProblem.of(problem, changed, basis, error)
+    changed: InformationObjective = kind(prior, information, objective.weights, **part)
+    return changed
 
 
 def _error(problem: Problem, objective: InformationObjective, changed: InformationObjective, root: FloatArray) -> float:

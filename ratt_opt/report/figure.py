@@ -62,10 +62,27 @@ def plan_figure(report: Findings, picture: Picture) -> Figure:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write ``path`` in the format of its suffix (png or svg), whole or not at all, without dates."""
-    import matplotlib as mpl
+    """Write ``path`` in the format of its suffix (png or svg), whole or not at all, without dates.
 
-    formats: dict[str, dict[str, Any]] = {".svg": {"metadata": {"Date": None}}, ".png": {"dpi": 150}}
-    options = formats[path.suffix]
-    with mpl.rc_context({"svg.hashsalt": "ratt-opt"}):
-        write_atomically(path, lambda file: figure.savefig(file, **options))
+    A canvas of that format draws once. ``savefig`` draws twice: the first time for margins, which are not cut here.
+    """
+    import matplotlib as mpl
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    def write(file: Path) -> None:
+        if path.suffix == ".svg":
+            svg: Any = FigureCanvasSVG(figure)
+            svg.print_svg(file, metadata={"Date": None})
+        else:
+            figure.set_dpi(150)
+            png: Any = FigureCanvasAgg(figure)
+            png.print_png(file)
+
+    canvas, dpi = figure.canvas, figure.dpi
+    try:
+        with mpl.rc_context({"svg.hashsalt": "ratt-opt"}):
+            write_atomically(path, write)
+    finally:
+        figure.set_dpi(dpi)
+        figure.set_canvas(canvas)

@@ -25,6 +25,9 @@ MARK = 7.0
 HALO = 2.0
 """Width of the pale rim of a word [points]."""
 
+SIDES = {"left": 0.0, "center": 0.5, "right": 1.0}
+"""Share of a word's width that lies left of where it is put."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Label:
@@ -53,10 +56,8 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         x, y = (float(c) for c in label.place)
         word = axes.annotate(literal(label.text), (x, y), (0, 0), textcoords="offset points", **style)
         choose_fonts(word)
-        boxes = []
-        for x, y, side in SPOTS:
-            word.set(position=(x, y), ha=side)
-            boxes.append(_box(word.get_window_extent(renderer)))
+        at_place = _box(word.get_window_extent(renderer))  # to the right of the place: asked for once, as it takes long
+        boxes = [_moved(at_place, x * points, y * points, side) for x, y, side in SPOTS]
         chosen, _ = best_spot(boxes, taken, _box(axes.bbox))
         x, y, side = SPOTS[chosen]
         word.set(position=(x, y), ha=side)
@@ -73,6 +74,12 @@ def halo() -> list[Any]:
 def _square(centre: FloatArray, half: float) -> Box:
     x, y = (float(c) for c in centre)
     return x - half, y - half, x + half, y + half
+
+
+def _moved(box: Box, x: float, y: float, side: str) -> Box:
+    """The box of a word once its ``side`` is that far from the place where its left end was."""
+    left = x - SIDES[side] * (box[2] - box[0])
+    return box[0] + left, box[1] + y, box[2] + left, box[3] + y
 
 
 def _box(given: BboxBase) -> Box:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["SPOTS", "Box", "best_spot", "overlap"]
+    from ratt_opt._validation import FloatArray
+
+__all__ = ["SPOTS", "Box", "best_spot"]
 
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom of a rectangle, in any unit."""
@@ -26,17 +30,17 @@ SPOTS = tuple(
 
 def best_spot(boxes: Sequence[Box], taken: Iterable[Box], inside: Box) -> tuple[int, float]:
     """The first of ``boxes`` that covers least of ``taken`` and sticks out least of ``inside``, and that area."""
-    known = list(taken)
-    costs = [_area(box) - overlap(box, inside) + sum(overlap(box, other) for other in known) for box in boxes]
-    least = min(costs)
-    return costs.index(least), least
+    known, own = list(taken), np.array(boxes, dtype=np.float64)
+    areas = (own[:, 2] - own[:, 0]) * (own[:, 3] - own[:, 1])
+    costs = areas - _overlaps(own, np.array([inside]))[:, 0]
+    if known:
+        costs += _overlaps(own, np.array(known)).sum(axis=1)
+    chosen = int(np.argmin(costs))
+    return chosen, float(costs[chosen])
 
 
-def overlap(a: Box, b: Box) -> float:
-    """The area that two boxes share."""
-    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
-    return width * height if width > 0 and height > 0 else 0.0
-
-
-def _area(box: Box) -> float:
-    return (box[2] - box[0]) * (box[3] - box[1])
+def _overlaps(boxes: FloatArray, others: FloatArray) -> FloatArray:
+    """(B, O) areas that boxes (B, 4) share with others (O, 4)."""
+    low = np.maximum(boxes[:, None, :2], others[None, :, :2])
+    high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
+    return np.asarray(np.maximum(high - low, 0.0).prod(axis=2))

@@ -92,6 +92,7 @@ class InformationObjective(CriterionParts):
     """
 
     __slots__ = (
+        "__weakref__",
         "_baseline",
         "_inverse_error",
         "_negative_parts",

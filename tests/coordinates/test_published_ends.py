@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,6 +62,16 @@ def test_no_value_is_further_from_the_exact_one_than_is_said(kind, digits):
                 chosen = [int(rng.choice(c)) for c in problem.choices if rng.random() < 0.7]
                 value, error = searched.objective(chosen), searched.evaluation_error
                 assert holds(value - error, exact(chosen), value + error)
+
+
+def test_problems_with_one_criterion_share_a_change_of_coordinates():
+    problem = spread_problem(0, "trace", 9)
+    others = replace(problem, alpha_s=0), ro.measured_coordinates(problem)
+    searched, *shared = map(with_unit_prior, (problem, *others))
+    assert searched.objective is not problem.objective
+    assert all(one.objective is searched.objective for one in shared)
+    moved = with_unit_prior(replace(problem, robot=[0, 0, 1, 1, 1, 2]))  # of other owners: the error is another
+    assert moved.objective is not searched.objective
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -13,7 +13,7 @@ import ratt_opt as ro
 from ratt_opt.missions.drawing.figures import mission_figure
 from ratt_opt.report.page.map_drawing import BROAD, LETTER, LINE, NARROW, map_svg
 from ratt_opt.report.picture import picture_of
-from ratt_opt.report.spots import best_spot, overlap
+from ratt_opt.report.spots import best_spot
 from tests.report.browser import opened
 
 QUICK = {"guarantees": "none", "time_limit": 10}
@@ -30,6 +30,12 @@ def crowded(seed: int) -> ro.Scenario:
 @pytest.fixture(scope="module")
 def reports() -> list[ro.BoundReport]:
     return [ro.bound(crowded(seed), **QUICK) for seed in range(3)]
+
+
+def overlap(a, b) -> float:
+    """The area that two boxes share."""
+    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    return width * height if width > 0 and height > 0 else 0.0
 
 
 def word_boxes(svg: str) -> list[tuple[float, float, float, float]]:

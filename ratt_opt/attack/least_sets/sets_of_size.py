@@ -27,7 +27,7 @@ __all__ = ["BoundedSets", "SetFamily", "SetSearch"]
 
 FINISHED, FOUND = 0, 2
 AT_ONCE = 10_000_000
-"""Values of single targets between two looks at the clock: some hundredths of a second."""
+"""Values of single targets between two updates of what is open; the clock is looked at more often, by the pace."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +68,7 @@ class SetSearch:
         limit: float = np.inf,
         in_order: bool = False,
     ) -> None:
+        self.pace = team.set_pace
         self._team, self._inside = team, np.zeros(team.robots, dtype=np.bool_) if inside is None else inside
         order = np.arange(team.robots) if among is None else np.ascontiguousarray(among, dtype=np.int64)
         start = team.sums(np.flatnonzero(self._inside))
@@ -178,6 +179,10 @@ class BoundedSets:
         search.lower(threshold, (threshold - self._constant) / self._scale)
         found = search.next(0)  # the last steps of a search may need no node
         if found is None:
-            found = search.next(budget.nodes_left(min(self._pause, max(most - before, 1))))
+            end, pace = before + budget.nodes_left(min(self._pause, max(most - before, 1))), search.pace
+            while found is None and search.nodes < end and not budget.is_over:
+                units = min(pace.units, end - search.nodes)
+                with pace.timed(units):
+                    found = search.next(units)
         budget.nodes += search.nodes - before
         return found if found is None or found is False else frozenset(np.flatnonzero(found).tolist())

@@ -31,9 +31,9 @@ __all__ = ["MOST_ROBOTS", "DisjointSets", "Rest", "SetColumns", "SetFilter", "Se
 MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
 NODES_OF_A_LOOK = 10_000
-"""Partial sets between two looks at the clock: some hundredths of a second."""
+"""Partial sets until it is asked how many were listed; the clock is looked at more often, by the team's pace."""
 LONGEST = 200
-"""Looks at the clock before a list is given up, ten seconds or so: what is that long to list is longer to search."""
+"""Times that this is asked before a list is given up: what is that long to list is longer to search."""
 MOST_SETS = 2_000_000
 """Sets listed at most: 32 MiB, and about a second for each bound that goes through them."""
 
@@ -86,7 +86,7 @@ def list_sets(team: Team, order: IntArray, size: int, wanted: SetFilter, budget:
     for _ in range(LONGEST):
         most = budget.nodes_left(NODES_OF_A_LOOK)
         before = listing.nodes
-        finished = listing.go_on(most)
+        finished = listing.go_on(most, budget)
         budget.nodes += listing.nodes - before
         if finished:
             return listing.found()
@@ -109,15 +109,16 @@ class _Listing:
         """Partial sets looked at."""
         return self._search.nodes
 
-    def go_on(self, nodes: int) -> bool:
-        """Continue the listing for ``nodes`` nodes; return whether every set is decided."""
-        stop = self._search.nodes + nodes
-        while self._search.nodes < stop and self.count <= MOST_SETS:
+    def go_on(self, nodes: int, budget: Budget) -> bool:
+        """Continue the listing for at most ``nodes`` nodes; return whether every set is decided."""
+        stop, pace = self._search.nodes + nodes, self._search.pace
+        while self._search.nodes < stop and self.count <= MOST_SETS and not budget.is_over:
             if self.count == len(self._masks):
                 self._masks = np.concatenate([self._masks, np.zeros_like(self._masks)])
                 self._values = np.concatenate([self._values, np.zeros_like(self._values)])
-            left = stop - self._search.nodes
-            self.count, is_finished = self._search.fill(left, self._masks, self._values, self.count)
+            units = min(pace.units, stop - self._search.nodes)
+            with pace.timed(units):
+                self.count, is_finished = self._search.fill(units, self._masks, self._values, self.count)
             if is_finished:
                 return True
         return False
