@@ -197,7 +197,7 @@ class Problem:
         """No robots of a plan are worth less, in exact arithmetic: no information is worth 0."""
         return -self.largest_fall
 
-    def outward(self, lower: float, upper: float) -> tuple[float, float]:
+    def widen_by_rounding(self, lower: float, upper: float) -> tuple[float, float]:
         """Ends of a worst case's bracket as computed, moved apart by what rounding may have done.
 
         That is the :attr:`evaluation_error`. No team is worth less than the :attr:`least_value`; if all robots that

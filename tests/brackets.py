@@ -21,13 +21,13 @@ def attains(problem, plan, result):
     """Whether the result's upper end is what its attack leaves; 0 is exact where no robot tells anything."""
     value = attained(problem, plan, result)
     is_nothing = value == 0.0 and not problem.has_information(problem.check_plan(plan), result.attack)
-    return result.upper == (0.0 if is_nothing else problem.outward(0.0, value)[1])
+    return result.upper == (0.0 if is_nothing else problem.widen_by_rounding(0.0, value)[1])
 
 
 def is_exact(problem, plan, result):
     """Whether both ends are what its attack leaves."""
     value = attained(problem, plan, result)
-    return result.lower == problem.outward(value, value)[0] and attains(problem, plan, result)
+    return result.lower == problem.widen_by_rounding(value, value)[0] and attains(problem, plan, result)
 
 
 def assert_closed(problem, plan, bracket, expected):

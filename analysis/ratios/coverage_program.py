@@ -18,7 +18,7 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.errors import ProofError
 from ratt_opt.worst_ratio.program import Inequality, RatioProgram, rational_points
-from ratt_opt.worst_ratio.search import skeleton
+from ratt_opt.worst_ratio.ratio_search import skeleton
 from ratt_opt.worst_ratio.witness import RatioQuestion, RatioWitness, replay, scaled_values
 
 if TYPE_CHECKING:

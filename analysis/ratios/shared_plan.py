@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from ratt_opt.attackers.exact import worst_case_attack
 from ratt_opt.budget import Budget, OutOfBudget, uninterrupted
 from ratt_opt.worst_ratio.ratio import class_rows
-from ratt_opt.worst_ratio.search import RatioSearch, skeleton
+from ratt_opt.worst_ratio.ratio_search import RatioSearch, skeleton
 from ratt_opt.worst_ratio.witness import PLANNERS, RatioWitness, replay
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.worst_ratio.search import Groups
+    from ratt_opt.worst_ratio.ratio_search import Groups
     from ratt_opt.worst_ratio.witness import RatioQuestion
 
 __all__ = ["SharedPlanRatio", "exchange_gain", "shared_plan_ratio"]

@@ -32,7 +32,7 @@ __all__ = [
     "PlanValues",
     "Resumable",
     "StageRecord",
-    "outward",
+    "widened_result",
 ]
 
 LARGEST_CHUNK = 4096
@@ -117,12 +117,12 @@ class AttackResult(ReprMixin):
         return f"AttackResult([{down(self.lower, 6)}, {up(self.upper, 6)}], {attack}, {self.stop.value}, {cost})"
 
 
-def outward(problem: Problem, plan: IntArray, found: AttackResult) -> AttackResult:
+def widened_result(problem: Problem, plan: IntArray, found: AttackResult) -> AttackResult:
     """A plan's attack, the ends moved apart by what computing them may have rounded.
 
     What the attack leaves is exactly 0 if nobody tells anything: not if the difference of two criteria is.
     """
-    lower, upper = problem.outward(found.lower, found.upper)
+    lower, upper = problem.widen_by_rounding(found.lower, found.upper)
     if found.upper == 0.0 and (error := problem.evaluation_error) > 0:
         upper = float(np.nextafter(error, np.inf)) if problem.has_information(plan, found.attack) else 0.0
     return replace(found, lower=lower, upper=upper)

@@ -16,7 +16,7 @@ from ratt_opt.attack.task import (
     CutoffReached,
     PlanValues,
     StageRecord,
-    outward,
+    widened_result,
 )
 from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.attack_tree import AttackTree
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.problem import Problem
 
-__all__ = ["strongest_attack", "worst_case_attack"]
+__all__ = ["worst_case_attack", "worst_case_attack_unrounded"]
 
 RENEWED = 4
 """Growth of the seconds since an earlier attack on the plan from which its first stages, which had shares of them, are
@@ -97,7 +97,7 @@ def worst_case_attack(
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
     memory = AttackMemory() if memory is None else memory
-    found = strongest_attack(
+    found = worst_case_attack_unrounded(
         problem,
         elements,
         max_nodes=max_nodes,
@@ -108,10 +108,10 @@ def worst_case_attack(
         known=known,
         memory=memory,
     )
-    return outward(memory.searched_of(problem), problem.check_plan(elements), found)
+    return widened_result(memory.searched_of(problem), problem.check_plan(elements), found)
 
 
-def strongest_attack(
+def worst_case_attack_unrounded(
     problem: Problem,
     elements: ArrayLike,
     *,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.attack.task import AttackResult, PlanValues, outward
+from ratt_opt.attack.task import AttackResult, PlanValues, widened_result
 from ratt_opt.budget import Budget, Stop
 from ratt_opt.problem import Attack
 
@@ -89,7 +89,7 @@ def heuristic_result(problem: Problem, values: PlanValues, attack: Attack) -> At
     lower, evaluations = problem.objective(()), values.evaluations
     upper = problem.team_value(values.plan, attack)
     found = AttackResult(attack=attack, lower=lower, upper=upper, stop=Stop.HEURISTIC, evaluations=evaluations)
-    return replace(outward(problem, values.plan, found), lower=lower)
+    return replace(widened_result(problem, values.plan, found), lower=lower)
 
 
 def _on_complete_graph(problem: Problem, order: list[int], blinded: frozenset[int]) -> Attack:

@@ -95,7 +95,7 @@ def relaxation_bound(
     claimed, selection, status = _solve(problem, largest, Budget.inside(budget, time_limit))
     cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection)]
     computed = float(max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)]))
-    _, upper = problem.outward(0.0, computed)
+    _, upper = problem.widen_by_rounding(0.0, computed)
     return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
 
 

@@ -10,7 +10,7 @@ from flint import fmpq
 from ratt_opt._rounding import up
 from ratt_opt.certificates.lower_explanation import MOST_LINES, listing, spans
 from ratt_opt.certificates.verifier.exact_matrices import total
-from ratt_opt.certificates.verifier.upper import UpperProof
+from ratt_opt.certificates.verifier.upper import UpperCheck
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -42,7 +42,7 @@ def upper_story(about: Statement, part: Mapping[str, Any]) -> list[str]:
     return [*lines[: MOST_LINES + 1], *said, "", "Take any plan:", *story.lines, *cut]
 
 
-class _Story(UpperProof):
+class _Story(UpperCheck):
     """Reads the proof as the verifier does and notes a line at each node."""
 
     def __init__(self, about: Statement, part: Mapping[str, Any]) -> None:

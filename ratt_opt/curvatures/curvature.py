@@ -23,8 +23,8 @@ from ratt_opt.curvatures.marginals import (
     check_monotone,
     enumerate_marginals,
 )
-from ratt_opt.curvatures.outward import complement_above, complement_below, quotient_above, quotient_below
 from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
+from ratt_opt.curvatures.rounded_quotients import complement_above, complement_below, quotient_above, quotient_below
 from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
 from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step

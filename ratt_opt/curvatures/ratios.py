@@ -26,7 +26,7 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.curvatures.curvature import ENUMERATION_SHARE, GAP, SECONDS, curvature_over
 from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
-from ratt_opt.curvatures.outward import complement_above, complement_below, quotient_above, quotient_below
+from ratt_opt.curvatures.rounded_quotients import complement_above, complement_below, quotient_above, quotient_below
 from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.base import finite_values

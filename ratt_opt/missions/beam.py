@@ -102,7 +102,7 @@ def solve_by_columns(
         nodes=nodes,
         worst_case=found.worst_case,
     )
-    return result.outward(problem)
+    return result.widen_by_rounding(problem)
 
 
 def _stopped(found: MaxMinResult, upper: float, gap: float, budget: Budget, fresh: IntArray) -> Stop | None:

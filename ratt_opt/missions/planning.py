@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.planner_world import Now, PlannerWorld
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["Part", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team", "planner_world"]
+__all__ = ["PlanningGroup", "TeamPlan", "capped", "offered_sequences", "part_problem", "plan_team", "planner_world"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Part:
+class PlanningGroup:
     """Robots that plan together: ``elements`` of the team, ascending, that are those of ``problem``.
 
     ``world`` : what they know of it.
@@ -47,10 +47,10 @@ class TeamPlan:
     memory: Memory
     sequences: Sequences
     problem: Problem
-    parts: tuple[Part, ...]
+    parts: tuple[PlanningGroup, ...]
     links_short: int
 
-    def chosen(self, plan: Callable[[Part], IntArray]) -> IntArray:
+    def chosen(self, plan: Callable[[PlanningGroup], IntArray]) -> IntArray:
         """(N,) elements of the team, each part planned by ``plan``."""
         picked = [part.elements[plan(part)] for part in self.parts]
         return readonly(np.sort(np.concatenate(picked)))  # elements are ascending by robot
@@ -89,7 +89,7 @@ def plan_team(world: World, memory: Memory, now: Now, threatened: Threatened) ->
         objective, sequences = world.objective(beliefs[0], offered_sequences(world, beliefs[0], poses, time), time)
         problem = world.problem(objective, sequences.owner, poses, threatened)
         seen = planner_world(world, beliefs[0], sequences, problem, now)
-        whole = (Part(np.arange(problem.objective.n), problem, seen),)
+        whole = (PlanningGroup(np.arange(problem.objective.n), problem, seen),)
         return TeamPlan(memory, sequences, problem, whole, threatened.alpha_c - problem.alpha_c)
     return _apart(world, memory, (now, threatened), list(zip(apart, beliefs, strict=True)))
 
@@ -138,7 +138,9 @@ def _apart(
         members, elements = sorted(group), np.flatnonzero(np.isin(joined.owner, sorted(group)))
         ahead = belief.predicted(world.motion, world.period, time)
         problem = part_problem(team, objective, members, elements, threatened)
-        parts.append(Part(readonly(elements), problem, seen.part(members, elements, ahead.mean, ahead.covariance)))
+        parts.append(
+            PlanningGroup(readonly(elements), problem, seen.part(members, elements, ahead.mean, ahead.covariance))
+        )
     return TeamPlan(memory, joined, team, tuple(parts), threatened.alpha_c - team.alpha_c)
 
 

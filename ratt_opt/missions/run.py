@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.missions.belief import Innovation
-    from ratt_opt.missions.planning import Part, TeamPlan
+    from ratt_opt.missions.planning import PlanningGroup, TeamPlan
     from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.missions.sensing import Reading
@@ -173,7 +173,7 @@ class _Flight:
         controls = readonly(team.sequences.controls[elements, 0])
         self._measure(step, team, elements, controls)
 
-    def _planned(self, part: Part) -> IntArray:
+    def _planned(self, part: PlanningGroup) -> IntArray:
         return elements_of(planned_with(self.players.plan, part.problem, part.world), part.problem)
 
     def _attacked(self, step: int, team: TeamPlan, elements: IntArray, threatened: Threatened) -> Attack:

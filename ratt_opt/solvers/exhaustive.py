@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.attackers.exact import strongest_attack
+from ratt_opt.attackers.exact import worst_case_attack_unrounded
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
@@ -86,12 +86,12 @@ def exhaustive_optimum(
     lower = upper = float(worst[best])
     if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
         upper = min(upper, problem.objective(range(problem.objective.n)))
-        lower = min(strongest_attack(problem, elements, time_limit=0, budget=own).lower, upper)
+        lower = min(worst_case_attack_unrounded(problem, elements, time_limit=0, budget=own).lower, upper)
     count = sum(values.size for values in group_values.values())
     found = MaxMinResult(
         elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size
     )
-    return found.outward(problem)
+    return found.widen_by_rounding(problem)
 
 
 def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:

@@ -19,7 +19,7 @@ import numpy as np
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer, readonly
 from ratt_opt._values import shown
-from ratt_opt.attack.task import outward
+from ratt_opt.attack.task import widened_result
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible, undisturbed
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
@@ -259,7 +259,7 @@ def _best(  # noqa: PLR0917
     upper = min(unattacked, pool.plan_value(proved.elements))
     if proved.worst_case is not None:
         upper = min(upper, proved.worst_case.upper)
-    elements, (lower, upper) = few.kept[proved.elements], problem.outward(min(proved.lower, upper), upper)
+    elements, (lower, upper) = few.kept[proved.elements], problem.widen_by_rounding(min(proved.lower, upper), upper)
     is_ratts = np.array_equal(elements, ratts.elements)
     return RefinedPlan(
         elements=readonly(elements),
@@ -271,5 +271,5 @@ def _best(  # noqa: PLR0917
         unattacked=float(unattacked),
         stop=stop,
         kicks=kicks,
-        worst_case=None if proved.worst_case is None else outward(problem, elements, proved.worst_case),
+        worst_case=None if proved.worst_case is None else widened_result(problem, elements, proved.worst_case),
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ByValue, ReprMixin, plain, shown
-from ratt_opt.attack.task import outward
+from ratt_opt.attack.task import widened_result
 from ratt_opt.problem import Plan
 
 if TYPE_CHECKING:
@@ -70,10 +70,10 @@ class MaxMinResult(ByValue, ReprMixin):
         """Its plan: functions that take elements take a result, too."""
         return np.array(self.elements, dtype=dtype, copy=copy)
 
-    def outward(self, problem: Problem) -> Self:
+    def widen_by_rounding(self, problem: Problem) -> Self:
         """The result, its ends moved apart by what computing them for ``problem`` may have rounded."""
-        worst = None if self.worst_case is None else outward(problem, self.elements, self.worst_case)
-        return replace(self.within(problem, *problem.outward(self.lower, self.upper)), worst_case=worst)
+        worst = None if self.worst_case is None else widened_result(problem, self.elements, self.worst_case)
+        return replace(self.within(problem, *problem.widen_by_rounding(self.lower, self.upper)), worst_case=worst)
 
     def within(self, problem: Problem, lower: float, upper: float) -> Self:
         """The result, its ends moved apart as far as these."""

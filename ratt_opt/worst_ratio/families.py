@@ -1,6 +1,6 @@
 """More families of instances on which RATT is exactly as bad as its bounds allow; ``witness.py`` replays each.
 
-Robots are named as in ``search.py``: bait first, then greedy robots in greedy order; ties go by that order.
+Robots are named as in ``ratio_search.py``: bait first, then greedy robots in greedy order; ties go by that order.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
 from ratt_opt.worst_ratio.class_rows import NonDecreasing, Submodular
 from ratt_opt.worst_ratio.closed_form import proved_ratio
-from ratt_opt.worst_ratio.search import RatioSearch, Skeleton, skeleton
+from ratt_opt.worst_ratio.ratio_search import RatioSearch, Skeleton, skeleton
 from ratt_opt.worst_ratio.witness import FAMILIES, PLANNERS, RatioQuestion, RatioWitness, replay
 
 if TYPE_CHECKING:

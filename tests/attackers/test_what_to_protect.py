@@ -73,7 +73,7 @@ def test_smallest_budgets_against_every_budget(seed):
     for budget in found:
         assert budget.is_proved
         asked = replace(problem, alpha_s=budget.alpha_s, alpha_c=budget.alpha_c)
-        assert budget.value == asked.outward(0.0, asked.team_value(elements, budget.attack))[1] < goal
+        assert budget.value == asked.widen_by_rounding(0.0, asked.team_value(elements, budget.attack))[1] < goal
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -71,7 +71,11 @@ def test_an_interrupt_returns_the_bracket_so_far(calls: int, monkeypatch: pytest
     outer = Budget()
     result = exhaustive_optimum(problem, budget=outer)
     assert result.lower <= optimum.lower
-    assert optimum.upper <= result.upper <= problem.outward(0.0, problem.objective(range(problem.objective.n)))[1]
+    assert (
+        optimum.upper
+        <= result.upper
+        <= problem.widen_by_rounding(0.0, problem.objective(range(problem.objective.n)))[1]
+    )
     assert result.stop is (outer.stop() or Stop.EXHAUSTED)
 
 
@@ -79,5 +83,5 @@ def test_a_spent_budget_returns_what_monotonicity_proves() -> None:
     problem = random_problem(np.random.default_rng(4), 3, kind="trace")
     result = exhaustive_optimum(problem, budget=Budget(time_limit=0))
     assert 0 < result.lower <= brute_force_worst_case(problem, result.elements)
-    assert result.upper == problem.outward(0.0, problem.objective(range(problem.objective.n)))[1]
+    assert result.upper == problem.widen_by_rounding(0.0, problem.objective(range(problem.objective.n)))[1]
     assert result.stop is Stop.TIME

@@ -167,7 +167,7 @@ def test_no_attack_needs_no_outcomes(n_robots: int, controls: int) -> None:
     found = exhaustive_optimum(replace(problem, alpha_s=0, alpha_c=0))
     assert found.stop is Stop.EXHAUSTED
     value = problem.objective(nonrobust_optimum(problem).elements)
-    assert (found.lower, found.upper) == problem.outward(value, value)
+    assert (found.lower, found.upper) == problem.widen_by_rounding(value, value)
     assert value >= problem.objective(ratt(problem).elements) * (1 - 1e-12)
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer
 from ratt_opt._values import ReprMixin
-from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, PlanValues, outward
-from ratt_opt.attackers.exact import strongest_attack
+from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, PlanValues, widened_result
+from ratt_opt.attackers.exact import worst_case_attack_unrounded
 from ratt_opt.attackers.link_choice.choice_search import best_choice
 from ratt_opt.attackers.link_choice.known_attacks import KnownAttacks
 from ratt_opt.attackers.link_choice.upgrades import Addition, Protection
@@ -186,13 +186,13 @@ class _LinkSearch:
         if not self.count:
             self.upper = self.after.upper
         problem = self.upgrade.problem
-        lower, upper = problem.outward(self.after.lower, max(self.upper, self.after.lower))
+        lower, upper = problem.widen_by_rounding(self.after.lower, max(self.upper, self.after.lower))
         return BestLinks(
             links=self.links,
             lower=lower,
             upper=upper,
-            before=outward(problem, self.values.plan, self.before),
-            after=outward(problem, self.values.plan, self.after),
+            before=widened_result(problem, self.values.plan, self.before),
+            after=widened_result(problem, self.values.plan, self.after),
             stop=Stop.CLOSED if self.upper <= self.level else stop or self.budget.stop() or self.unproved_stop,
             attacks=self.attacks,
             nodes=self.nodes,
@@ -238,7 +238,7 @@ class _LinkSearch:
         _, changed, memory = self._last
         nodes = self.max_nodes if max_nodes is None else max_nodes
         part = self.budget.part(share)
-        result = strongest_attack(changed, self.values.plan, max_nodes=nodes, budget=part, memory=memory)
+        result = worst_case_attack_unrounded(changed, self.values.plan, max_nodes=nodes, budget=part, memory=memory)
         self.attacks, self.nodes = self.attacks + 1, self.nodes + result.nodes
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
             self.unproved_stop = result.stop

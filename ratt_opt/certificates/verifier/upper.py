@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["Left", "UpperProof", "Winners", "check_upper", "upper_bounds"]
+__all__ = ["Left", "UpperCheck", "Winners", "check_upper", "upper_bounds"]
 
 Left = tuple[tuple[int, ...], ...]
 Winners = dict[int, frozenset[int]]
@@ -62,7 +62,7 @@ class _Cut(NamedTuple):
 
 
 class _Cover(NamedTuple):
-    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`UpperProof._cover`)."""
+    """A plan is worth at most ``bound`` if it counts less than needed of ``left_out`` (:meth:`UpperCheck._cover`)."""
 
     left_out: frozenset[int]
     bound: Any
@@ -82,10 +82,10 @@ def check_upper(about: Statement, part: object, upper: fmpq) -> int:
 
 def upper_bounds(about: Statement, part: object) -> list[Any]:
     """Return each leaf's bound; together the leaves cover all plans, or ProofError."""
-    return UpperProof(about, part).bounds
+    return UpperCheck(about, part).bounds
 
 
-class UpperProof:
+class UpperCheck:
     """A proof as it is read: what its leaves name, and the ``bounds`` of its leaves.
 
     The plans of a case are a product of element sets, one per robot: those ``left``. Under attack ``a`` the team value

@@ -95,8 +95,8 @@ def solve_maxmin(
     if not isinstance(problem.objective, InformationObjective):
         return search_any(problem, budget, gap, alpha_cs)
     searched = with_unit_prior(measured_coordinates(problem))
-    told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.outward(lower, upper)))
-    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, start).outward(searched)
+    told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
+    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)
     return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
@@ -165,7 +165,9 @@ def proved_by_tangents(
     part = budget.part(params.share, max_nodes=max(params.nodes, params.times * result.nodes))
     searched = with_unit_prior(measured_coordinates(problem))
     gap = max((result.upper - result.lower) / abs(result.upper), ROUNDING) if result.upper else ROUNDING
-    found = search_in_all_coordinates(searched, part, gap, start=result.elements, by_rows=False).outward(searched)
+    found = search_in_all_coordinates(searched, part, gap, start=result.elements, by_rows=False).widen_by_rounding(
+        searched
+    )
     lifted = searched.lifted(found)
     return replace(result, upper=max(lifted.upper, result.lower), proof=lifted.proof)
 

@@ -116,4 +116,4 @@ def link_attacks(asked: object) -> Way:
 
 def exact_attacks(attack: object) -> Way:
     """Let plans be attacked by a function of the test's own instead of the exact attack."""
-    return {(adversary, "strongest_attack"): attack}
+    return {(adversary, "worst_case_attack_unrounded"): attack}

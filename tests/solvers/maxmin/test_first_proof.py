@@ -72,7 +72,7 @@ def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(
     search.budget.time_limit = 0.0
     search.start(plans)
     best = int(np.argmax(at_once))
-    assert problem.outward(search.proved.lower, 0.0)[0] == at_once[best] > 0
+    assert problem.widen_by_rounding(search.proved.lower, 0.0)[0] == at_once[best] > 0
     assert np.array_equal(search.proved.elements, plans[best])
     assert search.proved.worst_case is not None
     assert search.proved.worst_case.upper == problem.team_value(plans[best], search.proved.worst_case.attack)

@@ -57,4 +57,4 @@ def test_the_attack_that_is_known_makes_it_lower():
     result = solve_maxmin(problem, time_limit=0)
     assert 0 < result.lower <= result.upper
     assert result.upper < problem.objective(range(problem.objective.n)) * (1 - 1e-6)
-    assert problem.outward(0.0, monotone_bound(problem, result.worst_case.attack).upper)[1] == result.upper
+    assert problem.widen_by_rounding(0.0, monotone_bound(problem, result.worst_case.attack).upper)[1] == result.upper
