@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["coverage_instance"]
 
 Item = int
-"""Bit mask of the elements that cover it, named as in ``search.py``: RATT's, then the other plan's."""
+"""Bit mask of the elements that cover it, named as in ``ratio_search.py``: RATT's, then the other plan's."""
 
 
 def coverage_instance(size: int, swapped: int, curvature: Fraction) -> tuple[Fraction, RatioWitness] | None:

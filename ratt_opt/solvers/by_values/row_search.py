@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.solvers.by_values.plan_tree import Pooled
-from ratt_opt.solvers.by_values.rows import Columns, RowBound
+from ratt_opt.solvers.by_values.rows import ElementClasses, RowBound
 from ratt_opt.solvers.by_values.whole_function import WholeFunction
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class RowSearch:
         threat = problem.threat
         self._only_blinds = threat.n_cut == 0 and len(problem.communication.groups()) == 1
         merges = self._only_blinds and not threat.protected_robots and not isinstance(parts, WholeFunction)
-        self._columns = Columns(problem, parts, merges=merges)
+        self._columns = ElementClasses(problem, parts, merges=merges)
         self._bound = RowBound(problem, parts, self._columns)
         self._pooled, self._caps = Pooled(problem, single), dict[frozenset[int], float]()
 

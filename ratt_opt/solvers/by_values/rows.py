@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
 
-__all__ = ["Columns", "RowBound", "RowParams"]
+__all__ = ["ElementClasses", "RowBound", "RowBoundParams"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RowParams:
+class RowBoundParams:
     """Effort of the linear program; more of each gives lower upper ends for more time.
 
     ``most_values`` : values of parts under outcomes that have columns of their own
@@ -44,7 +44,7 @@ class RowParams:
     tolerance: float = 1e-9
 
 
-class Columns:
+class ElementClasses:
     """Elements that the linear program need not tell apart: equal ones of robots with equal choices.
 
     ``column`` : (E,) of each element; ``robots`` : (columns,) robots of its class; ``kind`` : (N,) class of each robot
@@ -99,10 +99,10 @@ class RowBound:
     """
 
     def __init__(
-        self, problem: Problem, parts: Decomposition, columns: Columns, params: RowParams | None = None
+        self, problem: Problem, parts: Decomposition, columns: ElementClasses, params: RowBoundParams | None = None
     ) -> None:
         self._problem, self._parts, self._columns = problem, parts, columns
-        self._params = params or RowParams()
+        self._params = params or RowBoundParams()
         self._outcomes: list[FloatArray] = []
         self._rows: list[_Row] = []
         self._touching = [parts.touching(j) for j in range(parts.n_parts)]

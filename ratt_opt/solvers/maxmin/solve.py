@@ -17,7 +17,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, Plan, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.by_values.search import search_any
+from ratt_opt.solvers.by_values.solve_by_values import solve_by_values
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
@@ -93,7 +93,7 @@ def solve_maxmin(
     check_problem(problem)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
-        return search_any(problem, budget, gap, alpha_cs)
+        return solve_by_values(problem, budget, gap, alpha_cs)
     searched = with_unit_prior(measured_coordinates(problem))
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
     found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)

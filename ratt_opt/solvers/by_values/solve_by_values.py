@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["search_any"]
+__all__ = ["solve_by_values"]
 
 ENUMERATION_SHARE = 0.5
 """Share of the seconds and values left for the enumeration of a small problem. Not tuned."""
@@ -30,7 +30,7 @@ MOST_OUTCOMES = 200_000
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
-def search_any(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: int | None = None) -> MaxMinResult:
+def solve_by_values(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: int | None = None) -> MaxMinResult:
     """Bracket the optimum of any non-decreasing function; ``alpha_cs`` : what RATT was asked before, if it was.
 
     Relies on that (checked if it is small). A spent budget or an interrupt returns the bracket.
