@@ -139,6 +139,21 @@ class NodesRecord(Structure):
 
 
 @record
+class CutStatesRecord(Structure):
+    """Partial cuts that leave the same classes."""
+    classes: Int64; count: Int64
+    map: Int64s; states: Int64s
+
+
+@record
+class CutFrontRecord(Structure):
+    """Joined states, none as good as another."""
+    classes: Int64; most_cut: Int64; capacity: Int64; count: Int64
+    room: Int64s
+    states: Int64s
+
+
+@record
 class BranchRecord(Structure):
     """A node of the list of groups."""
     inside: UInt64; outside: UInt64; near: UInt64
@@ -410,6 +425,10 @@ class Loops(Protocol):
     def dive_by_covers(self, choices: ChoicesRecord, ways: WaysRecord, covers: CoversRecord, sums: SumsRecord,
                        stack: StackRecord, record: NodesRecord, level: Double, nodes: Int64, most: Int64,
                        outcome: Int32s) -> Int: ...
+
+    # cut_states.h
+    def join_cut_states(self, f: CutFrontRecord, a: CutStatesRecord, b: CutStatesRecord, start: Int64,
+                        pairs: Int64) -> Int64: ...
 
     # groups.h
     def list_groups(self, robots: Int, neighbours: UInt64s, protected_links: UInt64s, most: Int64,

@@ -2,5 +2,6 @@
 
 Open ``fewest.py`` first, then ``search.py``: groups that keep much come by column generation (``program.py``), their
 prices are proved by ``kept_links.py``, and what prices leave open by partitions into listed groups (``listed.py``).
+``elimination.py`` decides sparse networks and few cuts by dynamic programming, whatever their number of robots.
 ``smallest.py`` asks the same search for one size after the other; ``network.py`` is what all are given.
 """

@@ -1,7 +1,8 @@
 """The search for the least weight of links whose cut leaves groups of at most a size.
 
 From above, annealed partitions and an integer program over known groups; from below, prices that exact pricing proves.
-If both do not meet, a better partition uses only groups whose slack is within the gap: these are listed
+Sparse networks are decided by :mod:`ratt_opt.attack.edge_cuts.elimination`, large ones before prices are asked.
+If ends do not meet, a better partition uses only groups whose slack is within the gap: these are listed
 (:mod:`ratt_opt.attack.edge_cuts.listed`).
 """
 
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.edge_cuts.elimination import Elimination, TooManyStates
 from ratt_opt.attack.edge_cuts.kept_links import groups_above, some_groups_above
 from ratt_opt.attack.edge_cuts.listed import partition_that_keeps
 from ratt_opt.attack.edge_cuts.program import KeptProgram
@@ -34,6 +36,7 @@ class SearchParams:
     ``smooth`` : how near to the best proved prices the next ones are asked, in [0, 1)
     ``integer_nodes`` : of HiGHS's integer program over known groups
     ``most_listed`` : groups within the gap
+    ``priced_first`` : nodes of networks whose prices are asked before elimination: a certificate is made of prices
     """
 
     coolings: int = 6
@@ -43,6 +46,7 @@ class SearchParams:
     smooth: float = 0.5
     integer_nodes: int = 300
     most_listed: int = 300_000
+    priced_first: int = 200
 
 
 class CutSearch:
@@ -78,7 +82,11 @@ class CutSearch:
 
     def run(self) -> Stop:
         """Go through the parts until the ends meet or the budget is spent."""
-        parts = self._everything_fits, self._anneal, self._raise_prices, self._choose_known, self._list
+        by_prices = self._raise_prices, self._choose_known
+        eliminated = () if self.target is not None else (self._eliminate,)
+        is_large = self.network.n_nodes > self.params.priced_first
+        undecided = (*eliminated, *by_prices) if is_large else (*by_prices, *eliminated)
+        parts = self._everything_fits, self._anneal, *undecided, self._list
         try:
             for part in parts:
                 if self.is_settled:
@@ -121,6 +129,20 @@ class CutSearch:
                 self._program.add(label == np.arange(label.max() + 1)[:, None])
             if self.is_settled:
                 return
+
+    def _eliminate(self) -> None:
+        """Decide by elimination whether less is cut, if bags are small and states few."""
+        elimination, goal = Elimination(self.network), self.upper - 1
+        try:
+            label = elimination.least_cut(self.size, goal, self.budget)
+        except TooManyStates as limit:
+            self.limit = str(limit)
+            return
+        if label is not None:
+            self._offer(label)
+            goal = self.upper - 1
+        self.lower = goal + 1
+        self.reason = elimination.reason
 
     def _raise_prices(self) -> None:
         """Column generation: prices between the best proved ones and the program's, until these meet."""

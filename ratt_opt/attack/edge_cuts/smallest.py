@@ -1,7 +1,7 @@
 """The smallest possible largest group: how small can ``alpha_c`` cut links make the largest group?
 
-``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Complete graphs are decided by CAA, graphs
-that are hardly more than trees by their bridges, few cuts one by one. On all others an annealed cut bounds the size
+``N - n_max`` is what RATT takes link attacks to be worth in sensing attacks. Complete graphs are decided by CAA, few
+cuts one by one, sparse networks by elimination. On all others an annealed cut bounds the size
 from above, and the search of :func:`fewest_cuts` refutes the next smaller size, or finds a better cut, until both meet.
 Counting, and tree inequalities of a linear program, raise the lower end for as long as that takes.
 """
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.edge_cuts.elimination import Elimination, TooManyStates
 from ratt_opt.attack.edge_cuts.network import CutNetwork
 from ratt_opt.attack.edge_cuts.search import CutSearch
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
@@ -21,7 +22,6 @@ from ratt_opt.graph.communication import CommunicationGraph, Link
 from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
 from ratt_opt.graph.few_cuts import attacks_are_few, partitions_by_few_cuts
 from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
-from ratt_opt.graph.largest_group.bridges import by_bridges, is_nearly_a_tree
 from ratt_opt.graph.largest_group.counting import (
     COUNTED,
     LargestGroup,
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import networkx as nx
+
+    from ratt_opt._validation import IntArray
 
 __all__ = ["SizeParams", "bound_soon", "by_subsets", "largest_group_of", "largest_group_soon", "smallest_largest_group"]
 
@@ -126,13 +128,9 @@ def largest_group_of(threat: Threat, budget: Budget) -> LargestGroup:
     """:func:`smallest_largest_group` of a threat, whose robots to blind do not count; nodes are those of ``budget``."""
     if threat.links_alike:
         return by_caa(threat)
-    if is_nearly_a_tree(threat):
-        return by_bridges(threat, budget)
     if attacks_are_few(threat):
         return by_few_cuts(threat, budget)
-    quick = by_counting(threat, budget)
-    cut = annealed_cut(threat, quick.cut, quick.lower, budget)
-    search = _SizeSearch(threat, split_result(threat, cut, quick.lower, "counting", COUNTED), budget)
+    search = _SizeSearch(threat, by_counting(threat, budget), budget)
     search.run()
     return search.result()
 
@@ -221,8 +219,10 @@ class _SizeSearch:
         return split_result(self.threat, self.cut, self.lower, method, reason, stop=stop)
 
     def run(self) -> None:
-        """Try the next smaller size at once, then ask tree inequalities, then go on until the ends meet."""
+        """Eliminate; then try the next smaller size, ask tree inequalities, and go on until the ends meet."""
         try:
+            self._eliminate()
+            self._anneal()
             if self.lower < self.upper:
                 with self.budget.stage(PARAMS.first_share, max_nodes=PARAMS.first_nodes) as first:
                     self._decide(self.upper - 1, first)
@@ -233,6 +233,30 @@ class _SizeSearch:
             self._stop = spent.stop
             return
         self.go_down()
+
+    def _eliminate(self) -> None:
+        """Bisect sizes by elimination; which of them are decided depends on the network's tree width."""
+        elimination = Elimination(self._network)
+        while self.lower < self.upper:
+            size = max((self.lower + self.upper) // 2, int(self._network.size.max()))
+            try:
+                label = elimination.least_cut(size, self.threat.alpha_c, self.budget) if size < self.upper else None
+            except TooManyStates as limit:
+                self._limits = [str(limit)]
+                return
+            if label is None:
+                self._raise(min(size + 1, self.upper), f"no group of at most {size} is left: {elimination.reason}")
+            else:
+                self._take(label)
+
+    def _anneal(self) -> None:
+        self._take_cut(annealed_cut(self.threat, self.cut, self.lower, self.budget))
+
+    def _take(self, label: IntArray) -> None:
+        self._take_cut(self.threat.graph.links_between(self._network.groups_of(label)))
+
+    def _take_cut(self, cut: frozenset[Link]) -> None:
+        self.cut, self.upper = cut, largest_left(self.threat.graph, cut)
 
     def go_down(self, *, while_decided: bool = False) -> None:
         """Decide the next smaller size again and again; one that stays open is followed by smaller ones.
@@ -267,8 +291,7 @@ class _SizeSearch:
             )
             return True
         if search.upper <= self.threat.alpha_c:
-            self.cut = self.threat.graph.links_between(self._network.groups_of(search.label))
-            self.upper = largest_left(self.threat.graph, self.cut)
+            self._take(search.label)
             return True
         if stop is Stop.NODES and search.limit:
             self._limits = [search.limit]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import networkx as nx
@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attack.edge_cuts.elimination import EliminationParams
 from ratt_opt.attack.edge_cuts.kept_links import groups_above, some_groups_above
 from ratt_opt.attack.edge_cuts.listed import TripleParams, partition_that_keeps
 from ratt_opt.attack.edge_cuts.network import CutNetwork, exact_integers
@@ -177,8 +178,10 @@ def test_listed_groups_with_triples_decide_what_is_kept(seed, few, monkeypatch):
     assert partition_that_keeps(network, everything, prices, kept + 1, Budget()) is None
 
 
-def test_a_gap_of_prices_is_closed_by_triples_and_covers():
+def test_a_gap_of_prices_is_closed_by_triples_and_covers(monkeypatch):
     """Three robots in a ring, groups of two: prices say that one and a half links are kept; one is."""
+    never = partial(EliminationParams, width=0)
+    monkeypatch.setattr("ratt_opt.attack.edge_cuts.elimination.EliminationParams", never)
     found = ro.fewest_cuts(nx.disjoint_union_all([nx.cycle_graph(3)] * 3), 2)
     assert (found.by_prices, found.lower, found.upper) == (5, 6, 6)
     assert "listed" in found.reason or "groups that prices leave" in found.reason

@@ -197,7 +197,7 @@ def test_time_may_end_at_any_look_at_the_clock(method, monkeypatch):
     size, density, alpha_c = (16, 0.25, 8) if method == "milp" else (22, 0.2, 12)
     graph = nx.gnp_random_graph(size, density, seed=3)
     exact = ro.smallest_largest_group(graph, alpha_c).n_max
-    for looks in [*range(40), *range(40, 400, 23)]:
+    for looks in [*range(25), *range(25, 400, 47)]:
         clock = iter(range(10**9))
         monkeypatch.setattr("ratt_opt.budget.monotonic", lambda clock=clock: float(next(clock)))
         found = ro.smallest_largest_group(graph, alpha_c, method=method, time_limit=looks)
