@@ -107,6 +107,7 @@ from .missions.live.packets import (
     TrackerPlan as TrackerPlan,
 )
 from .scenario.planner_world import PlannerWorld as PlannerWorld
+from .missions.live.view import LiveView as LiveView
 from .missions.live.state import Measurement as Measurement, Moment as Moment, TrackerState as TrackerState
 from .missions.world import MissionModel as MissionModel
 from .missions.bags.loop import BagReplay as BagReplay, replay_bag as replay_bag

@@ -31,7 +31,8 @@ class Mission(FlownMission):
         return write_mission(self, directory)
 
     def animate(self, path: str | Path) -> Path:
-        """Write the animation: ``.gif``, ``.html`` for a player that needs nothing else, ``.mcap`` for log viewers.
+        """Write the animation: ``.gif``, ``.html`` for a player that needs nothing else, ``.mcap`` for log viewers,
+        ``.rrd`` for the viewer Rerun.
 
         InputError : another ending, a library that is not installed, or the file cannot be written.
         """

@@ -15,6 +15,7 @@ from ratt_opt.missions.bags.record import BagStep, ReplayedBag
 from ratt_opt.missions.live.state import Measurement
 from ratt_opt.missions.live.tracker import Tracker
 from ratt_opt.missions.world import MissionModel
+from ratt_opt.problem import Attack
 from ratt_opt.scenario.model import Target
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.missions.bags.mapping import BagMapping
+    from ratt_opt.missions.live.view import LiveView
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.model import Scenario
 
@@ -50,6 +52,7 @@ def replay_bag(
     planner: str | Planner = "ratt",
     gate: float | None = 0.999,
     progress: Callable[[int], object] | None = None,
+    view: LiveView | None = None,
 ) -> BagReplay:
     """Run the tracker over a ROS 1 or ROS 2 bag (``rosbags``, the extra ``bags``).
 
@@ -58,10 +61,11 @@ def replay_bag(
 
     Parameters
     ----------
-    bag : a ``.bag`` file, or the folder of a ROS 2 bag (``sqlite3`` or MCAP)
+    bag : a ``.bag`` file, the folder of a ROS 2 bag (``sqlite3`` or MCAP), or an ``.mcap`` file alone
     mapping : file that says which topic is which robot's, see :class:`BagMapping`
     planner, gate : as in :class:`Tracker`
     progress : called with the number of each step
+    view : shows each step as it is planned
 
     Raises
     ------
@@ -70,7 +74,7 @@ def replay_bag(
     """
     wanted, team = load_mapping(mapping)
     events = sorted(read_bag(bag, [*wanted.poses, *wanted.detections]), key=lambda event: event.time)
-    run = _Run(wanted, team, Tracker(team, planner=planner, gate=gate, model=MissionModel(motion=wanted.motion)))
+    run = _Run(wanted, team, Tracker(team, planner=planner, gate=gate, model=MissionModel(motion=wanted.motion)), view)
     first = {event.topic: event.time for event in reversed(events) if isinstance(event, PoseMessage)}
     if set(first) != set(wanted.poses):
         raise FileFormatError(str(bag), "must hold a pose on each mapped topic", sorted(set(wanted.poses) - set(first)))
@@ -94,6 +98,7 @@ class _Run:
     mapping: BagMapping
     team: Scenario
     tracker: Tracker
+    view: LiveView | None = None
     steps: list[BagStep] = field(default_factory=list)
     waiting: list[tuple[Detection, FloatArray]] = field(default_factory=list)
     numbers: dict[str, int] = field(default_factory=dict)
@@ -130,8 +135,11 @@ class _Run:
                 targets=self.tracker.targets,
                 belief=self.tracker.beliefs,
                 measured=count,
+                links=self.tracker.world.communication(before, Attack()).links,
             )
         )
+        if self.view is not None:
+            self.view.show(self.tracker, plan)
 
     def _measurement(self, event: Detection, pose: FloatArray) -> Measurement | None:
         how = self.mapping.detections[event.topic]

@@ -69,24 +69,69 @@ def read_bag(path: Path, topics: Collection[str]) -> Iterator[PoseMessage | Dete
     FileFormatError : the bag cannot be read, has no such topic, or a message of another type there.
     InputError : the library ``rosbags`` is not installed.
     """
+    alone = path.suffix == ".mcap" and not path.is_dir()
+    for topic, kind, message in (_mcap_messages if alone else _bag_messages)(path, topics):
+        yield from _told(path, topic, kind, message)
+
+
+def _store(path: Path, release: str = "ROS2_HUMBLE") -> Any:
+    """The message types of a release and those of detections. InputError : ``rosbags`` is not installed."""
     try:
-        from rosbags.highlevel import AnyReader, AnyReaderError
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
     except ImportError:
         raise InputError("bag", "needs the extra bags (pip install ratt-opt[bags])", path.name) from None
-    store = get_typestore(Stores.ROS2_HUMBLE)
+    store = get_typestore(Stores[release])
     for name, text in DEFINITIONS.items():
         store.register(get_types_from_msg(text, name))
+    return store
+
+
+def _bag_messages(path: Path, topics: Collection[str]) -> Iterator[tuple[str, str, Any]]:
+    """Topic, type and message of a bag with its metadata."""
+    store = _store(path)
+    from rosbags.highlevel import AnyReader, AnyReaderError
+
     try:
         with AnyReader([path], default_typestore=store) as reader:
             chosen = [one for one in reader.connections if one.topic in topics]
-            for missing in sorted(set(topics) - {one.topic for one in chosen}):
-                raise FileFormatError(str(path), f"must have the topic {missing}", sorted(reader.topics))
+            _check_topics(path, topics, reader.topics)
             for connection, _, raw in reader.messages(connections=chosen):
-                message = reader.deserialize(raw, connection.msgtype)
-                yield from _told(path, connection.topic, connection.msgtype, message)
+                yield connection.topic, connection.msgtype, reader.deserialize(raw, connection.msgtype)
     except (AnyReaderError, OSError) as error:
         raise FileFormatError(str(path), "must be a ROS bag", error) from None
+
+
+def _mcap_messages(path: Path, topics: Collection[str]) -> Iterator[tuple[str, str, Any]]:
+    """Topic, type and message of an MCAP file that stands alone, its types as its own schemas define them."""
+    stores = {"cdr": _store(path), "ros1": _store(path, "ROS1_NOETIC")}
+    from mcap.exceptions import McapError
+    from mcap.reader import make_reader
+    from rosbags.typesys import TypesysError, get_types_from_msg
+
+    known: set[tuple[str, str]] = set()
+    try:
+        with path.open("rb") as stream:
+            reader = make_reader(stream)
+            summary = reader.get_summary()
+            _check_topics(path, topics, {one.topic for one in summary.channels.values()} if summary else topics)
+            for schema, channel, message in reader.iter_messages(topics=list(topics)):
+                coding = channel.message_encoding
+                if schema is None or coding not in stores:
+                    raise FileFormatError(f"{path}: {channel.topic}", "must have messages of ROS 1 or 2", coding)
+                name = schema.name if "/msg/" in schema.name else schema.name.replace("/", "/msg/")
+                if (coding, name) not in known and name not in stores[coding].types:
+                    stores[coding].register(get_types_from_msg(schema.data.decode(), name))
+                known.add((coding, name))
+                decode = getattr(stores[coding], f"deserialize_{coding}")
+                yield channel.topic, name, decode(message.data, name)
+    except (McapError, TypesysError, OSError, UnicodeDecodeError) as error:
+        raise FileFormatError(str(path), "must be a ROS bag", error or type(error).__name__) from None
+
+
+def _check_topics(path: Path, topics: Collection[str], there: Collection[str]) -> None:
+    """FileFormatError : a topic is missing."""
+    for missing in sorted(set(topics) - set(there)):
+        raise FileFormatError(str(path), f"must have the topic {missing}", sorted(there))
 
 
 def _told(path: Path, topic: str, kind: str, message: Any) -> Iterator[PoseMessage | Detection]:

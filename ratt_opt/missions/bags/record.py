@@ -19,6 +19,7 @@ class BagStep:
     """One step at ``time`` [s of the bag]: ``poses`` (N, p), the ``plan`` and its ``controls`` (N, c).
 
     ``targets`` : numbers of those there are, in the order of ``belief``; ``measured`` : how many detections arrived.
+    ``links`` : pairs of robots that can communicate at these poses.
     """
 
     time: float
@@ -28,6 +29,7 @@ class BagStep:
     targets: tuple[int, ...]
     belief: Belief
     measured: int
+    links: frozenset[tuple[int, int]] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._files import output_directory, write_json, write_together
-from ratt_opt.missions.drawing.frames import ellipse_of
+from ratt_opt.missions.drawing.frames import MOST_LINKS, ellipse_of
 from ratt_opt.missions.drawing.log import save_frames
 from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.figure import save_figure
@@ -100,7 +100,7 @@ def _frame(number: int, step: BagStep) -> dict[str, Any]:
         "step": number,
         "robots": step.poses[:, :3].tolist(),
         "roles": ["best group"] * len(step.poses),
-        "links": [],
+        "links": [list(link) for link in sorted(step.links)[:MOST_LINKS]],
         "cut": [],
         "targets": [],
         "estimates": step.belief.positions.tolist(),

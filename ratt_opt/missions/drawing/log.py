@@ -13,6 +13,7 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.missions.drawing.frames import frames_of
+from ratt_opt.missions.drawing.rerun_log import RerunLog
 from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.missions.result import FlownMission
 
-__all__ = ["save_frames", "save_log"]
+__all__ = ["save_frames", "save_log", "save_recording"]
 
 FRAME = "map"
 TOPICS = {
@@ -43,6 +44,14 @@ def save_log(mission: FlownMission, path: Path) -> None:
     period = mission.scenario.sampling_period
     frames = frames_of(mission)
     save_frames(path, frames, _numbers(mission), [frame["step"] * period for frame in frames])
+
+
+def save_recording(mission: FlownMission, path: Path) -> None:
+    """Write the same pictures for the viewer Rerun. InputError : the library ``rerun-sdk`` is not installed."""
+    log, period = RerunLog(path), mission.scenario.sampling_period
+    for frame, numbers in zip(frames_of(mission), _numbers(mission), strict=True):
+        log.add(frame, numbers, frame["step"] * period)
+    log.close()
 
 
 def save_frames(

@@ -10,7 +10,7 @@ from ratt_opt._files import output_directory, write_atomically, write_json, writ
 from ratt_opt.errors import InputError
 from ratt_opt.missions.drawing.animation import save_gif
 from ratt_opt.missions.drawing.figures import mission_figure
-from ratt_opt.missions.drawing.log import save_log
+from ratt_opt.missions.drawing.log import save_log, save_recording
 from ratt_opt.missions.drawing.player import player_page
 from ratt_opt.missions.drawing.tables import mission_columns, mission_rows, track_columns, track_rows
 from ratt_opt.report.csv_file import write_csv
@@ -62,7 +62,9 @@ def _draw(mission: FlownMission, out: Path, others: Sequence[FlownMission]) -> l
 
 
 def write_animation(mission: FlownMission, path: str | Path) -> Path:
-    """Write the animation (``.gif``), the player (``.html``) or a log for viewers (``.mcap``, the extra ``viewers``).
+    """Write the animation (``.gif``), the player (``.html``), or a log for viewers.
+
+    ``.mcap`` needs the extra ``viewers``; ``.rrd``, for Rerun, the extra ``live``.
 
     Raises
     ------
@@ -75,4 +77,6 @@ def write_animation(mission: FlownMission, path: str | Path) -> Path:
         return write_atomically(target, lambda file: file.write_text(player_page(mission), encoding="utf-8"))
     if target.suffix == ".mcap":
         return write_atomically(target, lambda file: save_log(mission, file))
-    raise InputError("path", "must end in .gif, .html or .mcap", target)
+    if target.suffix == ".rrd":
+        return write_atomically(target, lambda file: save_recording(mission, file))
+    raise InputError("path", "must end in .gif, .html, .mcap or .rrd", target)

@@ -49,7 +49,7 @@ def with_target(world: World, state: TrackerState, target: Target) -> tuple[Worl
     """World and state once a target appears, known as it says. InputError : it is none, or its motion is not known."""
     if not isinstance(target, Target):
         raise InputError("target", "must be a Target", type(target).__name__)
-    others = world.scenario.targets
+    others = world.scenario.targets if state.targets else ()
     known = _world(world, (*others, target)).motion.initial(world.scenario.replace(targets=(*others, target)))
     # A known velocity's heading is that of time 0, when the target was not there yet.
     began = target.replace(heading=target.heading - target.turn_rate * state.time)
@@ -67,14 +67,15 @@ def with_target(world: World, state: TrackerState, target: Target) -> tuple[Worl
 
 
 def without_target(world: World, state: TrackerState, target: int) -> tuple[World, TrackerState]:
-    """World and state once a target has vanished. InputError : there is none of that number, or no other."""
+    """World and state once a target has vanished. InputError : there is none of that number.
+
+    A scenario has a target at least: after the last one its place is kept, and no belief is about it.
+    """
     if target not in state.targets or isinstance(target, bool):
         raise InputError("target", f"must be one of the targets {list(state.targets)}", target)
-    if len(state.targets) == 1:
-        raise InputError("target", "must not be the last one", target)
     row = state.targets.index(target)
     rest = tuple(t for k, t in enumerate(world.scenario.targets) if k != row)
-    return _world(world, rest), replace(
+    return _world(world, rest) if rest else world, replace(
         state,
         moments=tuple(_without_row(moment, row, target) for moment in state.moments),
         targets=tuple(j for j in state.targets if j != target),

@@ -57,6 +57,7 @@ class Moment(ByValue):
             "covariance": self.belief.covariance.tolist(),
             "refused": list(self.refused),
             "measurements": [[m.robot, m.target, list(m.values), m.time] for m in self.measurements],
+            **({} if len(self.belief.mean) else {"dimension": self.belief.mean.shape[1]}),
         }
 
     @classmethod
@@ -67,7 +68,7 @@ class Moment(ByValue):
             time=check_number("time", document["time"], low=0.0),
             poses=readonly(check_finite("poses", document["poses"], ndim=2)),
             pose_covariances=readonly(check_finite("pose_covariances", document["pose_covariances"], ndim=3)),
-            belief=Belief.of(document["mean"], document["covariance"]),
+            belief=_belief(document),
             refused=tuple(check_integer("refused", count, low=0) for count in _list("refused", document["refused"])),
             measurements=tuple(
                 Measurement(
@@ -79,6 +80,14 @@ class Moment(ByValue):
                 for robot, target, values, stamp in _rows("measurements", document["measurements"], 4)
             ),
         )
+
+
+def _belief(document: dict[str, Any]) -> Belief:
+    """The belief of a moment; without targets its lists are empty, and ``dimension`` says that of their states."""
+    if document["mean"] == [] and document["covariance"] == []:
+        d = check_integer("dimension", document.get("dimension"), low=2)
+        return Belief(readonly(np.zeros((0, d))), readonly(np.zeros((0, d, d))))
+    return Belief.of(document["mean"], document["covariance"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

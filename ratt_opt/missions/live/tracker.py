@@ -137,6 +137,13 @@ class Tracker:
         """Numbers of the targets that there are now."""
         return self.state.targets
 
+    @property
+    def links(self) -> frozenset[tuple[int, int]]:
+        """Links ``(i, j)`` at the robots' poses, without those known to be cut and those of lost robots."""
+        lost, attack = dict(self.state.lost), self.state.attack
+        links = self.world.communication(self.state.poses, attack).links
+        return frozenset(link for link in links if not lost.keys() & set(link))
+
     def step(
         self,
         measurements: Iterable[Measurement] = (),
@@ -179,7 +186,7 @@ class Tracker:
             raise InputError("measurements", "must be Measurements", measurements)
         strict = self.strict if strict is None else strict
         state, told = self._measured(list(measurements), now, (poses, pose_covariances), strict=strict)
-        offered = offered_sequences(self.world, state.belief, state.poses, state.time)
+        offered = self._offered(state)
         planned = self._planned(state, offered, began, strict=strict)
         chosen, lost = offered.only(planned.elements), [robot for robot, _ in state.lost]
         left = np.concatenate([chosen.controls[:, 1:], chosen.controls[:, -1:]], axis=1)
@@ -222,8 +229,10 @@ class Tracker:
         return self.state.targets[-1]
 
     def drop_target(self, target: int) -> None:
-        """A target has vanished; the others keep their numbers. InputError : there is none of that number, or it is the
-        last one."""
+        """A target has vanished; the others keep their numbers. InputError : there is none of that number.
+
+        After the last one robots go on as planned, then as they do last, until a target appears.
+        """
         self.world, self.state = without_target(self.world, self.state, target)
 
     def _start(self) -> TrackerState:
@@ -247,7 +256,7 @@ class Tracker:
         if not isinstance(state, TrackerState):
             raise InputError("state", "must be a TrackerState", type(state).__name__)
         (n, p), c = self.scenario.poses.shape, self.scenario.controls.shape[1]
-        m, d = self.scenario.n_targets, self.world.motion.dimension
+        m, d = self.scenario.n_targets if state.targets else 0, self.world.motion.dimension
         expected = {"poses": (n, p), "targets": (m,), "controls": (n, self.world.horizon, c)}
         found = {"poses": state.poses.shape, "targets": (len(state.targets),), "controls": state.controls.shape}
         for moment in state.moments:
@@ -317,12 +326,18 @@ class Tracker:
             found=tuple(sorted(taken.found)),
         )
 
+    def _offered(self, state: TrackerState) -> Sequences:
+        """Control sequences to choose from: without a target there is nothing that a beam could choose by."""
+        if not state.targets:
+            return self.world.sequences(state.poses)
+        return offered_sequences(self.world, state.belief, state.poses, state.time)
+
     def _planned(self, state: TrackerState, offered: Sequences, began: float, *, strict: bool) -> Planned:
         """A plan of the robots that are left; none is dropped, so that elements always mean the same to the caller."""
         rest = _nearest(offered, state.controls)
         lost = {robot for robot, _ in state.lost}
         alive = [i for i in range(self.scenario.n_robots) if i not in lost]
-        if not alive:
+        if not (alive and state.targets):
             return Planned(rest)
         threatened = threat(self.world, state)
         objective = self.world.criterion(state.belief, offered, state.time)
@@ -360,7 +375,7 @@ def _within_reach(state: TrackerState) -> TrackerState:
     Raises ``InputError`` : a robot or target is outside every scenario, as after a range of 1e300 m.
     """
     for name, numbers in (("poses", state.poses), ("estimates", state.belief.mean)):
-        if not np.abs(numbers).max() <= LARGEST:
+        if not np.abs(numbers).max(initial=0.0) <= LARGEST:
             raise InputError(name, f"must stay within {LARGEST:g}", float(np.abs(numbers).max()))
     return state
 

@@ -47,11 +47,14 @@ def heard(rng):
     return rows
 
 
-@pytest.mark.parametrize("kind", ["sqlite3", "mcap", "ros1"])
+@pytest.mark.parametrize("kind", ["sqlite3", "mcap", "ros1", "mcap alone"])
 def test_a_bag_in_and_plans_out(kind: str, tmp_path, capsys) -> None:
     rows = heard(np.random.default_rng(0))
     bag = tmp_path / ("run.bag" if kind == "ros1" else "run")
-    write(bag, kind, rows)
+    write(bag, kind.removesuffix(" alone"), rows)
+    if kind == "mcap alone":  # a recorder that was killed, or another tool, leaves no metadata
+        (bag,) = bag.glob("*.mcap")
+        bag = bag.rename(tmp_path / "alone.mcap")
     ro.save_scenario(TEAM, tmp_path / "team.json")
     (tmp_path / "map.json").write_text(json.dumps(MAPPING), encoding="utf-8")
     out = tmp_path / "out"
@@ -108,5 +111,8 @@ def test_bad_mappings_and_bags_are_one_line(tmp_path, capsys) -> None:
         assert "\n" not in error
     file.write_text(json.dumps(MAPPING), encoding="utf-8")
     assert run(["replay", str(tmp_path / "none"), "--map", str(file), "--out", str(out)]) == 2
+    assert "must be a ROS bag" in capsys.readouterr().err
+    (tmp_path / "torn.mcap").write_bytes(b"\x89MCAP0\r\nrubbish")
+    assert run(["replay", str(tmp_path / "torn.mcap"), "--map", str(file), "--out", str(out)]) == 2
     assert "must be a ROS bag" in capsys.readouterr().err
     assert not list(out.glob("*")) if out.exists() else True

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import ratt_opt as ro
 from ratt_opt import InputError, Measurement, MissionModel, Tracker, TrackerState, random_scenario, ratt, run_mission
 from ratt_opt.missions import run as mission_run
 
@@ -213,3 +214,25 @@ def test_the_example_over_a_pipe_keeps_its_deadlines() -> None:
     found = re.match(r"15 steps at 10 Hz: answers late (\d+), longest \d+ ms; plans missed (\d+)", done.stdout)
     assert found is not None
     assert int(found[1]) + int(found[2]) <= 5
+
+
+@pytest.mark.parametrize("motion", ["known velocity", "constant velocity", "coordinated turn", "constant velocity 3d"])
+def test_the_last_target_may_go_and_another_come(motion: str) -> None:
+    """Without targets robots go on and sightings are skipped; a new target is tracked as by a tracker of it alone."""
+    model = ro.MissionModel(motion=motion)
+    team = ro.random_scenario(3, 1, alpha_s=1, alpha_c=1, seed=0)
+    tracker = ro.Tracker(team, model=model)
+    tracker.step()
+    tracker.drop_target(0)
+    plan = tracker.step([ro.Measurement(0, 0, (1.0, 0.1))])
+    assert [one.reason for one in plan.skipped] == ["unknown target"]
+    assert tracker.targets == ()
+    kept = json.loads(json.dumps(tracker.state.to_dict()))
+    again = ro.Tracker(tracker.scenario, model=model, state=ro.TrackerState.from_dict(kept))
+    assert again.state == tracker.state
+    fresh = ro.Target(x=3.0, y=4.0, speed=1.0)
+    assert [one.add_target(fresh) for one in (tracker, again)] == [1, 1]
+    alone = ro.Tracker(team.replace(targets=[fresh]), model=model)
+    np.testing.assert_array_equal(tracker.beliefs.mean, alone.beliefs.mean)
+    np.testing.assert_array_equal(tracker.step().elements, again.step().elements)
+    assert tracker.beliefs == again.beliefs
