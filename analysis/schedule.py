@@ -5,16 +5,18 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.attack.size_vectors.size_vector_search import STAGES as SIZE_VECTORS
-from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
+from ratt_opt.attack.params import AttackParams
+from ratt_opt.attack.size_vectors.size_vector_search import stages_of
+from ratt_opt.attackers.schedule import criterion_stages, stages_by_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+PARAMS = AttackParams()
 TABLES: dict[str, Sequence[Any]] = {
-    "criterion": CRITERION,
-    "function": USER_FUNCTION,
-    "sizes": SIZE_VECTORS,
+    "criterion": criterion_stages(PARAMS.stages),
+    "function": stages_by_values(PARAMS.stages),
+    "sizes": stages_of(PARAMS.size_vectors),
 }
 
 

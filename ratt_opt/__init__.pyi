@@ -47,6 +47,7 @@ from .attackers.survey import attack_survey as attack_survey
 from .attackers.heuristics import bounded_rational_attack as bounded_rational_attack
 from .attackers.heuristics import greedy_attack as greedy_attack
 from .attackers.heuristics import random_attack as random_attack
+from .attack.params import AttackParams as AttackParams
 from .attack.task import AttackResult as AttackResult
 from .attackers.criticality import (
     criticality_ranking as criticality_ranking,

@@ -128,10 +128,10 @@ def test_a_new_name_would_be_refused() -> None:
     for text in (
         f"from {package}.attackers.exact import worst_case_attack",
         f"import {package}.attackers.exact",
-        f"patch('{package}.attackers.exact.CRITERION', ())",
+        f"patch('{package}.attackers.exact.DEFAULT', ())",
         f"PROGRAM = 'from {package}.attackers import exact'",
         f"from {package}.attackers import (\n    exact,\n)",
-        "r" + "o.attackers.exact.CRITERION",
+        "r" + "o.attackers.exact.DEFAULT",
     ):
         assert named_in(text) == {"attackers.exact"}
     assert is_allowed("attackers/test_schedule.py", "attackers.exact")

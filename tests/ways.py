@@ -1,16 +1,21 @@
 """Ways that a search is sent: limits inside the package, for as long as a test runs.
 
-A way is a table ``{(module, name): value}``; each family has its own in its ``engine.py``.
+A way is a table ``{(module, name): value}``, or ``{(AttackParams, "family.name"): value}`` of attacks that are not
+given other parameters; each family has its own in its ``engine.py``.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+from ratt_opt import AttackParams
+from ratt_opt.attack import params as parameters
 
 if TYPE_CHECKING:
     import pytest
 
-__all__ = ["Way", "go"]
+__all__ = ["Way", "go", "with_params"]
 
 Way = dict[tuple[Any, str], Any]
 
@@ -19,4 +24,15 @@ def go(monkeypatch: pytest.MonkeyPatch, *ways: Way) -> None:
     """Let searches go these ways until the test ends."""
     for way in ways:
         for (module, name), value in way.items():
-            monkeypatch.setattr(module, name, value)
+            if module is AttackParams:
+                monkeypatch.setattr(parameters, "DEFAULT", with_params(parameters.DEFAULT, {(module, name): value}))
+            else:
+                monkeypatch.setattr(module, name, value)
+
+
+def with_params(params: AttackParams, way: Way) -> AttackParams:
+    """Parameters with the values of a way."""
+    for (_, place), value in way.items():
+        family, name = place.split(".")
+        params = replace(params, **{family: replace(getattr(params, family), **{name: value})})
+    return params

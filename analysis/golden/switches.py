@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.dual_prices import ThresholdDecision
-from ratt_opt.attack.least_sets import least_set_search
-from ratt_opt.attack.size_vectors import decision as size_decision
+from ratt_opt.attack.params import PackingParams, SetSearchParams
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin import division, levels
@@ -35,19 +35,19 @@ def _gives(value: Any) -> Any:
     return lambda *_, **__: value
 
 
+def _attacked(**params: Any) -> Patches:
+    return ((parameters, "DEFAULT", parameters.AttackParams(**params)),)
+
+
 STAGE_NAMES = dict.fromkeys(
     stage.name for kind in ("criterion", "sizes") for stage in TABLES[kind] if stage.name not in NEEDED
 )
 BOUNDS: dict[str, Patches] = {
     "pricing: annealed": ((ThresholdDecision, "_cheap", _gives([])),),
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
-    "outer polytopes of several robots": ((least_set_search, "HEAVY_ROBOTS", ((10**9, 1),)),),
-    "search of sets in depth": (
-        (least_set_search, "WHOLE", ((10**9, 0),)),
-        (least_set_search, "FEWEST", 1),
-        (least_set_search, "MOST", 1),
-    ),
-    "packing": ((size_decision, "PACKED", -1),),
+    "outer polytopes of several robots": _attacked(set_search=SetSearchParams(heavy=((10**9, 1),))),
+    "search of sets in depth": _attacked(set_search=SetSearchParams(whole=((10**9, 0),), fewest=1, most=1)),
+    "packing": _attacked(packing=PackingParams(packed=-1)),
 }
 """Patches that switch off one part of the attack each."""
 PLAN_SWITCHES: dict[str, Patches] = {

@@ -15,6 +15,7 @@ import numpy as np
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.columns import UNIT, Columns
 from ratt_opt.attack.master import best_duals
+from ratt_opt.attack.params import DEFAULT
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Links, Team, has_native_kernel, work_of_value
 from ratt_opt.budget import OutOfBudget, Stop
@@ -24,6 +25,7 @@ from ratt_opt.setfunctions.metered import Metered, unmetered
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.budget import Budget
     from ratt_opt.graph.group_list import GroupList
@@ -35,26 +37,6 @@ LARGEST_VALUED = 20
 """Most robots whose sets are all valued if the compiled code does not support the objective: 2**20 values."""
 LARGEST_ENUMERATED, MOST_WORK = 24, 2.0**32
 """Most robots whose sets the compiled code enumerates (2**24 bytes), and most multiplications for their values."""
-STARTS, MOVES = 4, 400
-"""Annealed attacks before the first threshold, and moves for each pair of robots; on most networks of 24 robots in the
-corpus one of them is the worst attack, and elsewhere the first threshold finds it."""
-FEW = 12
-"""Robots whose sets are all valued at first: fewer values than annealing asks for."""
-BLOCK = 2**10
-"""Sets valued at once: what is lost where the budget ends. A block of a fast function takes some milliseconds."""
-FALL, SLACK = 1e-12, 1e-9
-"""Relative to the largest value: up to which a smaller one of a larger set is rounding; and what is taken off a bound
-found before, which is more than all falls on the way from set to set add up to."""
-FIRST_STEPS, MORE = 100_000_000, 4
-"""Steps of the first search of covers (some tenths of a second), and their growth while it stays undecided.
-A lower threshold is tested after each. The first was enough for every network of 16 to 24 robots that was tried, 75 of
-the corpus and 54 with random budgets; a complete graph of 20 robots needed more."""
-LEVELS = 10
-"""Values that are told apart once the bracket counts as closed, one threshold each. Mostly there are none."""
-NARROW = 1e-3
-"""Relative width of the bracket below which a lower threshold is not asked."""
-MOST_COLUMNS = 2_000_000
-"""Within the gap, above which no cover is searched."""
 
 
 def can_enumerate_subsets(task: AttackTask) -> bool:
@@ -76,19 +58,27 @@ class AllSets:
     def __init__(self, task: AttackTask) -> None:
         self.task = task
         self._threat = task.problem.threat
-        self._team = Team.of(task.problem.objective, task.values.plan)
+        self._team = Team.of(task.problem.objective, task.values.plan, task.params)
         self._graph = groups_of(self._threat)
         self._table, self._valued = np.empty(0 if self._team else 2**task.values.n), 0
         self._below: SetsBelow | None = None
-        self._steps = FIRST_STEPS
+        self._steps = task.params.all_sets.first_steps
 
     def run(self) -> Stop:
         """Narrow the task's bracket; raises ``OutOfBudget``."""
         self.task.budget.check()
         below, bracket = self._begun(), self.task.bracket
-        threshold, levels = bracket.goal, LEVELS
+        threshold, levels = bracket.goal, self.task.params.all_sets.levels
         while not bracket.is_closed or (bracket.lower < bracket.upper and levels > 0):
-            answer = decide(self._threat, below, self._graph, threshold, self.task.budget, steps=self._steps)
+            answer = decide(
+                self._threat,
+                below,
+                self._graph,
+                threshold,
+                self.task.budget,
+                steps=self._steps,
+                params=self.task.params,
+            )
             if answer.is_reachable:
                 self._offer(answer.groups, answer.blinded)
             elif answer.is_reachable is not None:
@@ -106,9 +96,9 @@ class AllSets:
         width = threshold - bracket.lower
         if not is_open:
             return bracket.goal
-        if width > NARROW * abs(bracket.upper):
+        if width > self.task.params.all_sets.narrow * abs(bracket.upper):
             return bracket.lower + width / 2
-        self._steps *= MORE
+        self._steps *= self.task.params.all_sets.more
         return bracket.goal
 
     def _begun(self) -> SetsBelow:
@@ -118,11 +108,17 @@ class AllSets:
             self._tabulate()
             self._drop_monotone_bounds()
         source: Team | FloatArray = self._table if self._team is None else self._team
-        if self._team is not None and self._team.robots <= FEW:
+        if self._team is not None and self._team.robots <= self.task.params.all_sets.few:
             source = self._team.all_values()
-        starts = Starts(source, Links.of(self._threat), self._threat, moves=MOVES * self._graph.robots)
+        starts = Starts(
+            source,
+            Links.of(self._threat),
+            self._threat,
+            self.task.params.annealing,
+            moves=self.task.params.all_sets.moves * self._graph.robots,
+        )
         try:
-            for _ in range(STARTS):
+            for _ in range(self.task.params.all_sets.starts):
                 starts.next(self.task.budget)
         finally:
             if starts.best is not None:
@@ -149,7 +145,7 @@ class AllSets:
         asked = values if isinstance(values.objective, Metered) else Metered(values, budget)
         bits = np.arange(values.n)
         while self._valued < len(table):
-            masks = np.arange(self._valued, min(self._valued + BLOCK, len(table)))
+            masks = np.arange(self._valued, min(self._valued + self.task.params.all_sets.block, len(table)))
             table[masks] = asked.evaluate((masks[:, None] >> bits & 1).astype(np.bool_))
             self._valued += len(masks)
 
@@ -158,10 +154,12 @@ class AllSets:
 
         The least value of the table holds in any case.
         """
-        bracket, table = self.task.bracket, self._table
+        bracket, table, params = self.task.bracket, self._table, self.task.params.all_sets
         largest = float(np.abs(table).max())
-        is_ordered = unmetered(self.task.problem.objective).is_non_decreasing or not _falls(table, FALL * largest)
-        proved = bracket.lower - SLACK * largest - bracket.rounding if is_ordered else -np.inf
+        is_ordered = unmetered(self.task.problem.objective).is_non_decreasing or not _falls(
+            table, params.fall * largest
+        )
+        proved = bracket.lower - params.slack * largest - bracket.rounding if is_ordered else -np.inf
         bracket.lower = max(proved, float(table.min()))
 
 
@@ -187,7 +185,14 @@ class Reachability:
 
 
 def decide(
-    threat: Threat, below: SetsBelow, graph: GroupList, threshold: float, budget: Budget, *, steps: int
+    threat: Threat,
+    below: SetsBelow,
+    graph: GroupList,
+    threshold: float,
+    budget: Budget,
+    *,
+    steps: int,
+    params: AttackParams = DEFAULT,
 ) -> Reachability:
     """Ask ``below`` for the threshold, list columns, bound their master, and search covers within its gap.
 
@@ -202,11 +207,11 @@ def decide(
     level, following = below.mark(threshold, budget)
     columns = Columns.of(groups, cuts, below, threat.n_blinded)
     most_cut = 2 * threat.alpha_c
-    duals = best_duals(columns, threat.n_blinded, most_cut, budget).duals
+    duals = best_duals(columns, threat.n_blinded, most_cut, budget, params.master).duals
     gap = most_cut * UNIT - duals.claim(threat.n_blinded)
     if gap < 0:
         return Reachability(is_reachable=False, level=level, following=following)
-    chosen = columns.within(duals, gap, MOST_COLUMNS)
+    chosen = columns.within(duals, gap, params.all_sets.most_columns)
     if chosen is None:
         return Reachability(is_reachable=None)
     few, costs = chosen

@@ -15,31 +15,13 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.params.groups import AnnealingParams
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
     from ratt_opt.problem import Problem
 
 __all__ = ["AnnealedAttacks", "Partition", "Starts"]
-
-MOVES, LONGER, LONGEST = 10_000, 16, 4
-"""Moves per robot of the first starts; they double after each ``LONGER`` starts, up to ``LONGEST`` times as many. At 24
-robots a start of 240,000 moves takes 0.02 s and finds the best known attack in half of the starts, but one case in ten;
-at 100 robots starts that are twice as long are as good after one second and better after three."""
-
-PART = 500_000
-"""Moves between two looks at the clock, times what a value takes in the plane: some thousandths of a second."""
-
-HOT, COLD = 0.02, 0.00005
-"""First and last temperature relative to the whole team's value. Nine attacks on 50 and 100 robots, two seeds, three
-seconds each, miss the best known by 0.10 % on average, with a last one of 0.0002 by 0.24 %; 0.001 ends up to 5 % too
-high at 100 robots."""
-
-WARM = HOT / 5
-"""First temperature where a start is a good attack."""
-
-AGAIN = 4
-"""Every fourth start begins with the best attack so far, the others with the team without a cut."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,9 +46,17 @@ class Starts:
     """
 
     def __init__(
-        self, source: Team | FloatArray, links: Links, threat: Threat, seed: int = 0, moves: int = MOVES
+        self,
+        source: Team | FloatArray,
+        links: Links,
+        threat: Threat,
+        params: AnnealingParams,
+        *,
+        seed: int = 0,
+        moves: int | None = None,
     ) -> None:
-        self._source, self._links, self._threat, self._moves = source, links, threat, moves
+        self._source, self._links, self._threat, self._params = source, links, threat, params
+        self._moves = params.moves if moves is None else moves
         self._rng = np.random.default_rng(seed)
         self._random = self._rng.integers(1, 2**63, 1, np.uint64)
         self._count = 0
@@ -84,13 +74,13 @@ class Starts:
         ------
         OutOfBudget : the time is up; ``best`` keeps what was found.
         """
-        moves = self._moves * min(2 ** (self._count // LONGER), LONGEST)
+        moves = self._moves * min(2 ** (self._count // self._params.longer), self._params.longest)
         self._count += 1
-        if self._count % AGAIN == 0 and self.best is not None:
-            return self._anneal(self.best.group.copy(), self.best.blind.copy(), WARM, moves, budget)
+        if self._count % self._params.again == 0 and self.best is not None:
+            return self._anneal(self.best.group.copy(), self.best.blind.copy(), self._params.warm, moves, budget)
         blind = np.zeros(self._threat.graph.n_robots, dtype=np.bool_)
         blind[self._rng.permutation(np.flatnonzero(~self._links.seeing))[: self._threat.n_blinded]] = True
-        return self._anneal(self._groups(frozenset()), blind, HOT, moves, budget)
+        return self._anneal(self._groups(frozenset()), blind, self._params.hot, moves, budget)
 
     def _groups(self, cut: frozenset[Link]) -> IntArray:
         """(N,) the group of each robot after cutting links."""
@@ -106,11 +96,11 @@ class Starts:
         blind[list(attack.sensing)] = True
         free = self._rng.permutation(np.flatnonzero(~(blind | self._links.seeing)))
         blind[free[: self._threat.n_blinded - len(attack.sensing)]] = True
-        return self._anneal(group, blind, WARM, self._moves, budget)
+        return self._anneal(group, blind, self._params.warm, self._moves, budget)
 
     def _anneal(self, group: IntArray, blind: BoolArray, hot: float, moves: int, budget: Budget) -> Partition | None:
         best, best_blind, least, partition = group.copy(), blind.copy(), np.full(1, np.inf), None
-        links, steps, part = self._links, moves * len(group), max(PART // self._work, 1)
+        links, steps, part = self._links, moves * len(group), max(self._params.part // self._work, 1)
         record = AnnealRecord(
             table=None if self._table is None else address(self._table),
             team=address_of(self._source.record) if isinstance(self._source, Team) else None,
@@ -128,7 +118,7 @@ class Starts:
             last=0,
             steps=steps,
             hot=hot * self._scale,
-            cold=COLD * self._scale,
+            cold=self._params.cold * self._scale,
             least=address(least),
             random=address(self._random),
         )
@@ -164,7 +154,7 @@ class AnnealedAttacks:
         """
         team = Team.of(problem.objective, plan)
         assert team is not None
-        starts = Starts(team, self._links, self._threat, seed=self._count, moves=moves)
+        starts = Starts(team, self._links, self._threat, team.params.annealing, seed=self._count, moves=moves)
         self._count += 1
         try:
             best = starts.next(self._budget) if known is None else starts.near(known, self._budget)

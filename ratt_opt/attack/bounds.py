@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
+from ratt_opt.attack.params import DEFAULT
 from ratt_opt.budget import Stop
 from ratt_opt.graph.largest_group.counting import counting_bound
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
@@ -16,6 +17,7 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attack.params.groups import BoundParams
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
@@ -122,16 +124,6 @@ def strongest_left(single: FloatArray, threat: Threat) -> float:
     return float(max(left.max(initial=-np.inf), single[is_protected].max(initial=-np.inf)))
 
 
-LARGEST_WEIGHT = 2**20
-
-TREE_SHARE, TREES_SHORT = 0.025, (0.05, 0.5)
-"""Share of the remaining budget for tree inequalities (sparse graphs only); share and seconds for a short search.
-On dense graphs trees used up their share and proved nothing. A short search gets more, as the first threshold lies
-half-way up from what trees prove. Measured at 100 robots of disk-6 and of a small world: trees prove 79 and 63 % of the
-attack in a minute, prices 75 % in a second. Their bounds on sizes count more: on disk-12 of 50 robots, (10, 45), a
-group that keeps 18 is known after two seconds, 17 after one; with it bounds by sizes prove 97.2, not 96.6 %."""
-
-
 def bound_by_trees(task: AttackTask, objective: InformationObjective, *, is_about_values: bool) -> int:
     """Unblinded robots that every attack leaves in a group, by tree inequalities; the bracket has their value.
 
@@ -141,18 +133,25 @@ def bound_by_trees(task: AttackTask, objective: InformationObjective, *, is_abou
     ------
     OutOfBudget : the time is up.
     """
-    budget, bracket, (share, seconds) = task.budget, task.bracket, TREES_SHORT
+    budget, bracket, params = task.budget, task.bracket, task.params.bounds
     plan, threat = task.values.plan, task.problem.threat
-    part = budget.part(TREE_SHARE, at_least=min(share * budget.seconds_left, seconds))
+    part = budget.part(params.share, at_least=min(params.short_share * budget.seconds_left, params.short))
     size = forced_size(threat, part, threat.graph.n_robots)
     bracket.raise_lower(first_bound(objective, plan, threat, size))
     if is_about_values:
-        bracket.raise_lower(tree_bound(objective, plan, threat, part, bracket.upper))
+        bracket.raise_lower(tree_bound(objective, plan, threat, part, bracket.upper, params))
     budget.check()
     return size
 
 
-def tree_bound(objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, enough: float) -> float:
+def tree_bound(  # noqa: PLR0917
+    objective: InformationObjective,
+    plan: IntArray,
+    threat: Threat,
+    budget: Budget,
+    enough: float,
+    params: BoundParams = DEFAULT.bounds,
+) -> float:
     """No attack on a plan (N,) leaves less; relies on a non-decreasing objective. ``-inf`` if nothing is known.
 
     ``enough`` : no more is needed; ``budget`` : once it is spent, what is known by then
@@ -161,18 +160,20 @@ def tree_bound(objective: InformationObjective, plan: IntArray, threat: Threat, 
     low, high, best = forced_size(threat, budget, seeing), seeing, -np.inf
     while 0 < low <= high and best < enough and budget.stop() is None:
         k = (low + high) // 2
-        kept = _kept_value(objective, plan, threat, budget, k)
+        kept = _kept_value(objective, plan, threat, budget, k, params.largest_weight)
         larger = weakest_average(objective, plan, k + 1) if k < seeing else np.inf
         best = max(best, min(kept, larger))
         low, high = (k + 1, high) if larger < kept else (low, k - 1)
     return rounded_down(best, objective) if best > -np.inf else best
 
 
-def _kept_value(objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, k: int) -> float:
+def _kept_value(  # noqa: PLR0917
+    objective: InformationObjective, plan: IntArray, threat: Threat, budget: Budget, k: int, largest_weight: int
+) -> float:
     """Lower bound on the value of a group of at most ``k`` robots that keeps the forced weight."""
     weights = np.maximum(objective.value(objective.prior_information + k * objective.information[plan]) / k, 0.0)
     if not weights.max() > 0:
         return 0.0
-    unit = weights.max() / LARGEST_WEIGHT
+    unit = weights.max() / largest_weight
     whole = np.floor(weights / unit).astype(np.int64)
     return float(unit) * forced_weight(threat, whole, budget, int(whole.sum()))

@@ -31,34 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["ThresholdDecision"]
 
 
-MARGIN = 5e-3
-"""Links that scaled prices claim beyond the budget; well above rounding, well below one link."""
-
-TOLERANCE = 1e-6
-"""Reduced costs below minus this count as negative: above what the linear program leaves of its rows, and a team's sum
-stays well below MARGIN."""
-
-LOWERED = 0.003
-"""Amount by which all robots' prices fall once no group has a reduced cost below minus this: then none is negative."""
-
-FIRST_ATTEMPT, LONGER = 10_000, 3
-"""Nodes of the first search for a column of a threshold, and their growth from search to search."""
-
-ROUNDED = 2
-"""Units of duals by which rounding may leave the cost of a group below zero."""
-
-MOVES, WARM = 1_500, (4.0, 0.1)
-"""Moves around each robot to find groups that pay the prices; the temperatures they cool between, in links that leave a
-group."""
-
-MOST_ROUNDS, ROUNDS_SHARE = 50, 0.05
-"""Rounds of annealing at the prices that claim most, and their share of the remaining seconds.
-At 100 robots of hubs, three seconds make a threshold at 94 % of the attack one of 800 nodes. At the prices for few
-groups it takes more than 25,000."""
-
-ROOM, NEW_GROUPS, LISTING = 100_000, 100, 2
-"""Groups listed for covers; groups added to the program at a time; nodes that one of a listing counts for."""
-
 HALF = 2 * UNIT
 """Dual prices are about half links: each link that is cut leaves two groups."""
 
@@ -68,7 +40,8 @@ class ThresholdDecision:
 
     def __init__(self, plan: PricingProblem) -> None:
         self._plan, self._links, self.threat = plan, plan.links, plan.threat
-        self.prices = GroupPrices(plan.threat)
+        self._params = plan.team.params.dual_prices
+        self.prices = GroupPrices(plan.threat, plan.team.params.master)
         self._begun: tuple[Question, GroupSearch] | None = None
         """The last question, and its search, if that did not end."""
         self._random = c_uint64(1)
@@ -98,17 +71,19 @@ class ThresholdDecision:
         OutOfBudget : the time is up.
         """
         budget.check()
-        size, spent, links = self._plan.most_below(threshold), budget.nodes, self.threat.alpha_c + MARGIN
-        attempt = FIRST_ATTEMPT
+        size, spent, links = self._plan.most_below(threshold), budget.nodes, self.threat.alpha_c + self._params.margin
+        attempt = self._params.first_attempt
         while (left := nodes - (budget.nodes - spent)) > 0:
             found = self._settled(threshold, size, budget)
             is_enough = found.links > links
             prices = found.scaled(links) if is_enough else found
-            question = question_of(prices, threshold, size, -TOLERANCE if is_enough else -LOWERED)
+            question = question_of(
+                prices, threshold, size, -self._params.tolerance if is_enough else -self._params.lowered
+            )
             verdict = self._priced(question, min(attempt, left), budget)
-            attempt *= LONGER
+            attempt *= self._params.longer
             if verdict is Threshold.REFUTED and not is_enough:
-                return self._cover(prices.lowered(LOWERED), threshold, size, budget, nodes)
+                return self._cover(prices.lowered(self._params.lowered), threshold, size, budget, nodes)
             if verdict is Threshold.REFUTED and self._is_too_much(question):
                 return Answer(verdict=Threshold.REFUTED, prices=prices)
             if verdict in {Threshold.REFUTED, Threshold.OPEN}:
@@ -122,7 +97,7 @@ class ThresholdDecision:
         """
         begun, self._begun = self._begun, None
         search = begun[1] if begun is not None and begun[0].is_same(question) else GroupSearch(self._plan, question)
-        columns, is_complete = search.columns(nodes, NEW_GROUPS, budget)
+        columns, is_complete = search.columns(nodes, self._params.new_groups, budget)
         below = float(np.nextafter(question.threshold, -np.inf))
         if columns:
             found = [KnownGroup(robots=one.robots, need=one.found, value=below) for one in columns]
@@ -142,7 +117,11 @@ class ThresholdDecision:
 
         The first rounds ask the prices that claim most: slack is measured against all groups, and not against few.
         """
-        rounds, links, part = MOST_ROUNDS, self.threat.alpha_c + MARGIN, budget.part(ROUNDS_SHARE)
+        rounds, links, part = (
+            self._params.rounds,
+            self.threat.alpha_c + self._params.margin,
+            budget.part(self._params.rounds_share),
+        )
         while True:
             budget.check()
             found = self.prices.solve(threshold, budget.seconds_left)
@@ -155,8 +134,14 @@ class ThresholdDecision:
 
     def _cheap(self, prices: DualPrices, threshold: float, size: int, budget: Budget) -> list[KnownGroup]:
         """Groups that pay these prices, by annealing around each robot."""
-        question, groups, below = question_of(prices, threshold, size, -TOLERANCE), [], np.nextafter(threshold, -np.inf)
-        for column in self._plan.annealed(question, MOVES, WARM, self._random):
+        question, groups, below = (
+            question_of(prices, threshold, size, -self._params.tolerance),
+            [],
+            np.nextafter(threshold, -np.inf),
+        )
+        for column in self._plan.annealed(
+            question, self._params.moves, (self._params.hot, self._params.cold), self._random
+        ):
             budget.check()
             if column.cost < question.limit:
                 groups.append(KnownGroup(robots=column.robots, need=column.need, value=float(below)))
@@ -166,10 +151,10 @@ class ThresholdDecision:
         """Try all partitions into groups of small reduced cost."""
         question = question_of(prices, threshold, size, 0.0)
         gap = 2 * self.threat.alpha_c * UNIT - question.claim(self.threat.n_blinded)
-        gap += ROUNDED * self._plan.robots
+        gap += self._params.rounded * self._plan.robots
         question = replace(question, limit=gap + 1)
         with GroupSearch(self._plan, question) as search:
-            columns, is_complete = search.columns(nodes // LISTING, ROOM, budget)
+            columns, is_complete = search.columns(nodes // self._params.listing, self._params.room, budget)
         if not is_complete:
             return Answer(verdict=Threshold.OPEN)
         members = self._covered(sorted(columns, key=lambda column: column.cost), gap, budget)

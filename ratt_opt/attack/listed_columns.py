@@ -36,12 +36,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ListedColumns", "ListedSearch"]
 
-STEP = 0.02
-"""A threshold that far below the attack in hand is decided first, once a budget has ended the search."""
-
-MOST_WITHIN = 1_000_000
-"""Columns within the gap, above which no cover is searched."""
-
 
 class ListedSearch:
     """Closes the task's bracket; relies on a non-decreasing objective. It goes on where it ended.
@@ -82,7 +76,7 @@ class ListedSearch:
 
     def _threshold(self) -> float:
         bracket = self.task.bracket
-        first = bracket.upper - STEP * abs(bracket.upper)
+        first = bracket.upper - self._team.params.listed.step * abs(bracket.upper)
         return first if self._was_ended and bracket.lower < first else bracket.goal
 
 
@@ -90,7 +84,7 @@ class ListedColumns:
     """The columns of one threshold, with the robots that are at least to blind in each."""
 
     def __init__(self, threat: Threat, team: Team, groups: GroupList, threshold: float) -> None:
-        self._threat, self.threshold = threat, threshold
+        self._threat, self._team, self.threshold = threat, team, threshold
         masks, cuts = groups.so_far()
         self._columns = Columns(groups.robots, masks.copy(), cuts.copy(), np.zeros_like(cuts))
         self._cardinality = MaxCardinalityBelow(team, threshold, mask_of(threat.protected_robots))
@@ -120,7 +114,7 @@ class ListedColumns:
                 gap = most_cut * UNIT - duals.claim(n_blinded)
                 if gap < 0:
                     return Answer(verdict=Threshold.REFUTED)
-                within = self._columns.within(duals, gap, MOST_WITHIN)
+                within = self._columns.within(duals, gap, self._team.params.listed.most_within)
                 if within is None:
                     return Answer(verdict=Threshold.OPEN)
                 few, costs = within
@@ -149,7 +143,9 @@ class ListedColumns:
         while True:
             budget.spend()
             self._restrict()
-            bound = best_duals(self._columns, self._threat.n_blinded, enough, budget, self._still_possible())
+            bound = best_duals(
+                self._columns, self._threat.n_blinded, enough, budget, self._team.params.master, self._still_possible()
+            )
             self._entered = bound.columns
             if bound.duals.claim(self._threat.n_blinded) > enough * UNIT or not self._has_limited(bound.used, budget):
                 return bound.duals

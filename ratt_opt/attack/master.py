@@ -31,16 +31,12 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.attack.columns import Column, Columns
+    from ratt_opt.attack.params.groups import MasterParams
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
     from ratt_opt.highs import Rows
 
 __all__ = ["DualBound", "GroupPrices", "KnownGroup", "best_duals"]
-
-USED = 1e-7
-"""Part of a column in a solution that is more than the program's tolerance."""
-MOST_ROWS = 6_000
-"""Rows before those are dropped that have slack at the last prices; more only slow the program down."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +51,8 @@ class DualBound:
     used: list[Column]
 
 
-def best_duals(
-    columns: Columns, n_blinded: int, most_cut: int, budget: Budget, first: Iterable[Column] = ()
+def best_duals(  # noqa: PLR0917
+    columns: Columns, n_blinded: int, most_cut: int, budget: Budget, params: MasterParams, first: Iterable[Column] = ()
 ) -> DualBound:
     """The best duals under which no column has a negative reduced cost, or some that claim more than ``most_cut``.
 
@@ -87,7 +83,7 @@ def best_duals(
         known.update(dict.fromkeys(fresh))
         program.add_rows(_rows(fresh, n))
     entered = list(known)
-    return DualBound(best, entered, [entered[k] for k in np.flatnonzero(parts > USED)])
+    return DualBound(best, entered, [entered[k] for k in np.flatnonzero(parts > params.used)])
 
 
 def _rounded(claimed: FloatArray, n: int) -> IntegerDuals | None:
@@ -132,8 +128,8 @@ class GroupPrices:
     that leaves only such groups cuts at least ``sum of pi - mu alpha_s`` links.
     """
 
-    def __init__(self, threat: Threat) -> None:
-        self._threat, self._robots = threat, threat.graph.n_robots
+    def __init__(self, threat: Threat, params: MasterParams) -> None:
+        self._threat, self._robots, self._params = threat, threat.graph.n_robots, params
         self._adjacent = np.zeros((self._robots, self._robots), dtype=np.int64)
         for i, j in threat.graph.links:
             self._adjacent[i, j] = self._adjacent[j, i] = 1
@@ -166,7 +162,7 @@ class GroupPrices:
         if len(claim) != n + 1:
             return DualPrices(robot=np.zeros(n), blinded=0.0, links=0.0)
         robot, blinded = claim[:n], max(float(claim[n]), 0.0)
-        if self._program.n_rows > MOST_ROWS:
+        if self._program.n_rows > self._params.most_rows:
             self._forget(robot, blinded)
         return DualPrices(robot=robot, blinded=blinded, links=float(robot.sum()) - blinded * self._threat.n_blinded)
 
@@ -186,5 +182,5 @@ class GroupPrices:
         keys, groups = list(self._groups), list(self._groups.values())
         robots, need = np.array([group.robots for group in groups]), np.array([group.need for group in groups])
         costs = self.half_cuts(robots) + blinded * need - robots @ robot
-        self._groups = {keys[k]: groups[k] for k in np.argsort(costs, kind="stable")[: MOST_ROWS // 2]}
+        self._groups = {keys[k]: groups[k] for k in np.argsort(costs, kind="stable")[: self._params.most_rows // 2]}
         self._program = None

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.params import DEFAULT
 from ratt_opt.attack.team import KEPT_LINKS, WORK, Links, Team
 from ratt_opt.native.library import address, address_of
 from ratt_opt.native.loops import PricingRecord, loops
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.budget import Budget
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
@@ -36,11 +38,6 @@ __all__ = ["BLINDED", "UNIT", "DualPrices", "GroupSearch", "PricedGroup", "Prici
 
 UNIT = 1 << 20
 """Unit of integer duals: one link that leaves a group."""
-MOST_PAIRED = 100
-"""Robots of a team whose pairs are compared, if that is no more than ``WORK.pairs``: else levels of single robots bound
-sets."""
-EFFORT, EFFORT_WORK = 200_000, 50_000_000
-"""Robots valued at most to decide what a group needs, and multiplications for it: less than a tenth of a second."""
 FINISHED = 0
 NODES = PaceParams(first=2**3, most=2**20)
 """Nodes of a search for groups in one call."""
@@ -57,16 +54,18 @@ class PricingProblem:
         self.least_cuts = _least_cuts(threat)
 
     @classmethod
-    def of(cls, objective: SetFunction, elements: IntArray, threat: Threat) -> PricingProblem | None:
+    def of(
+        cls, objective: SetFunction, elements: IntArray, threat: Threat, params: AttackParams = DEFAULT
+    ) -> PricingProblem | None:
         """Build the problem of one plan; ``None`` if the compiled code does not support the objective."""
-        team = Team.of(objective, elements)
+        team = Team.of(objective, elements, params)
         return None if team is None else cls(team, Links.of(threat), threat)
 
     @cached_property
     def tables(self) -> tuple[FloatArray, NDArray[np.int32], NDArray[np.uint8]] | None:
         """Levels of copies of two robots, the other robots by these, and which sizes are filled."""
         robots = self.robots
-        if robots > MOST_PAIRED or robots**2 * self.team.work > WORK.pairs:
+        if robots > self.team.params.pricing.paired or robots**2 * self.team.work > WORK.pairs:
             return None
         shape = robots + 1, robots, robots
         return np.zeros(shape), np.zeros(shape, np.int32), np.zeros(robots + 1, np.uint8)
@@ -99,7 +98,7 @@ class PricingProblem:
 
     def record(self, question: Question, robots: IntArray) -> PricingRecord:
         """Record that the C code reads; all arrays that it has the addresses of must be kept alive."""
-        links, tables = self.links, self.tables
+        links, tables, params = self.links, self.tables, self.team.params.pricing
         return PricingRecord(
             team=address_of(self.team.record),
             threshold=question.threshold,
@@ -118,7 +117,7 @@ class PricingProblem:
             blinding=question.blinding,
             unit=question.unit,
             limit=question.limit,
-            effort=question.effort or min(EFFORT, EFFORT_WORK // self.team.work + 1),
+            effort=question.effort or min(params.effort, params.work // self.team.work + 1),
             levels=tables and address(tables[0]),
             near=tables and address(tables[1]),
             filled=tables and address(tables[2]),

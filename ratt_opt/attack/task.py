@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ReprMixin, counted, plain
+from ratt_opt.attack.params import AttackParams
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
@@ -222,6 +223,7 @@ class AttackTask:
     """Narrow ``bracket`` for the plan of ``values`` within ``budget``; the bracket holds the answer.
 
     ``memory`` : where a search that can go on later is left; ``records`` : what stages did, in order
+    ``params`` : of the algorithms
     """
 
     problem: Problem
@@ -230,6 +232,7 @@ class AttackTask:
     budget: Budget
     memory: AttackMemory = field(default_factory=AttackMemory)
     records: list[StageRecord] = field(default_factory=list)
+    params: AttackParams = field(default_factory=AttackParams)
 
     def offer(self, attack: Attack) -> bool:
         """Value an attack and keep it if it is the worst so far; return whether it is."""

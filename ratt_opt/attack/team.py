@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 import numpy as np
 
 from ratt_opt._validation import readonly
+from ratt_opt.attack.params import DEFAULT
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import TeamRecord, loops
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.graph.communication import CommunicationGraph
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
@@ -77,19 +79,25 @@ class Team:
     """Information of the robots of one plan about the targets; symmetric matrices packed, T = d (d + 1) / 2 entries.
 
     ``objective`` : a criterion of the compiled code; ``weights`` : (M,) its own; ``prior`` : (M, T) prior information
-    ``information`` : (N, M, T) of each robot's element
+    ``information`` : (N, M, T) of each robot's element; ``params`` : of the algorithms that attack the team
 
     Raises
     ------
     InputError : a shape or a type is another, or the compiled code does not support the objective.
     """
 
-    def __init__(self, objective: InformationObjective, prior: FloatArray, information: FloatArray) -> None:
+    def __init__(
+        self,
+        objective: InformationObjective,
+        prior: FloatArray,
+        information: FloatArray,
+        params: AttackParams = DEFAULT,
+    ) -> None:
         if not has_native_kernel(objective) or (criterion := objective.compiled_code) is None:
             raise InputError("objective", "must be one that the compiled code supports", type(objective).__name__)
         robots, targets, d = len(information), objective.n_targets, objective.dimension
         entries = d * (d + 1) // 2
-        self.objective, self.robots = objective, robots
+        self.objective, self.robots, self.params = objective, robots, params
         self.weights = checked("weights", np.array(objective.weights), np.float64, (targets,))
         self.prior = checked("prior", prior, np.float64, (targets, entries))
         self.information = checked("information", information, np.float64, (robots, targets, entries))
@@ -111,15 +119,15 @@ class Team:
         loops.criteria_before(self.record, address(self._before))
 
     @classmethod
-    def of(cls, objective: SetFunction, plan: IntArray) -> Team | None:
+    def of(cls, objective: SetFunction, plan: IntArray, params: AttackParams = DEFAULT) -> Team | None:
         """Build the team of a plan; ``None`` if the compiled code does not support the objective."""
         if not has_native_kernel(objective):
             return None
-        return cls(objective, triangles(objective.prior_information), triangles(objective.information[plan]))
+        return cls(objective, triangles(objective.prior_information), triangles(objective.information[plan]), params)
 
     def among(self, robots: IntArray) -> Team:
         """Some of the robots, in this order."""
-        return Team(self.objective, self.prior, np.ascontiguousarray(self.information[robots]))
+        return Team(self.objective, self.prior, np.ascontiguousarray(self.information[robots]), self.params)
 
     @property
     def is_planar(self) -> bool:

@@ -110,24 +110,6 @@ class _Exchanges:
         return self._known[robots]
 
 
-MOVES, IN_VAIN = 200, 8
-"""Moves per robot of the first starts, twice as many after two in vain; starts in a row that find nothing worse before
-it is enough."""
-
-HOT, WARM, COLD = 0.05, 0.01, 0.0005
-"""First temperatures, from the whole team and from the attack in hand, and last ones, relative to the team's value."""
-
-ALONE, BLINDS, TOGETHER, HALF = 0.15, 0.5, 0.2, 0.5
-"""Shares of moves into a new group, of exchanges of blinded robots, and of moves that take some neighbours along, each
-with a chance of a half."""
-
-PRICE = 0.02
-"""Price of each link beyond the budget, relative to the team's value."""
-
-REMEMBERED = 200_000
-"""Values of groups that are kept from start to start."""
-
-
 def annealed_attacks(task: AttackTask, seed: int = 0) -> None:
     """Offer attacks of one start after the other, from the whole team and from the attack in hand in turn.
 
@@ -135,11 +117,12 @@ def annealed_attacks(task: AttackTask, seed: int = 0) -> None:
     ------
     OutOfBudget : time or evaluations are spent; what was found counts.
     """
+    params = task.params.value_annealing
     rng, in_vain, count = np.random.default_rng(seed), 0, 0
     known: dict[frozenset[int], float] = {}
-    while in_vain < IN_VAIN and not task.bracket.is_closed:
+    while in_vain < params.in_vain and not task.bracket.is_closed:
         before = task.bracket.upper
-        _Start(task, rng, known, is_warm=count % 2 == 1).run(MOVES * 2 ** (in_vain // 2))
+        _Start(task, rng, known, is_warm=count % 2 == 1).run(params.moves * 2 ** (in_vain // 2))
         in_vain = 0 if task.bracket.upper < before else in_vain + 1
         count += 1
 
@@ -160,6 +143,7 @@ class _Start:
         self, task: AttackTask, rng: np.random.Generator, known: dict[frozenset[int], float], *, is_warm: bool
     ) -> None:
         self._task, self._rng, self._known, problem = task, rng, known, task.problem
+        self._params = params = task.params.value_annealing
         n_robots = problem.n_robots
         self._near = _neighbours(n_robots, problem.communication.links)
         self._held = _neighbours(n_robots, problem.protected_links)
@@ -174,7 +158,8 @@ class _Start:
         self._blind |= set(rng.permutation(np.array(others, dtype=np.int64))[:missing].tolist())
         self._cut = len(problem.communication.links_between(self._parts()))
         self._worth = {label: self._value(label) for label in set(self._group.tolist())}
-        self._hot, self._scale = WARM if is_warm else HOT, max(abs(task.values(range(n_robots))), 1e-300)
+        self._hot = params.warm if is_warm else params.hot
+        self._scale = max(abs(task.values(range(n_robots))), 1e-300)
 
     def run(self, moves: int) -> None:
         """Anneal from hot to cold with ``moves`` moves per robot; raises ``OutOfBudget``."""
@@ -182,11 +167,11 @@ class _Start:
         task.offer_split(self._parts(), self._blind)
         for step in range(steps):
             task.budget.check()
-            undo = self._blinding() if self._rng.random() < BLINDS else self._joining()
+            undo = self._blinding() if self._rng.random() < self._params.blinds else self._joining()
             if undo is None:
                 continue
-            after, temperature = self._energy(), self._scale * self._hot * (COLD / self._hot) ** (step / steps)
-            if after > energy and self._rng.random() >= np.exp((energy - after) / temperature):
+            after, cooling = self._energy(), (self._params.cold / self._hot) ** (step / steps)
+            if after > energy and self._rng.random() >= np.exp((energy - after) / (self._scale * self._hot * cooling)):
                 self._undo(*undo)
                 continue
             energy = after
@@ -196,7 +181,7 @@ class _Start:
     def _energy(self) -> float:
         """Return the value of the best group, plus the price of links beyond the budget."""
         too_many = max(self._cut - self._task.problem.alpha_c, 0)
-        return max(self._worth.values()) + PRICE * self._scale * too_many
+        return max(self._worth.values()) + self._params.price * self._scale * too_many
 
     def _blinding(self) -> tuple[dict[int, int], set[int], dict[int, float]] | None:
         """Exchange a blinded robot for one that sees; what undoes it."""
@@ -211,8 +196,8 @@ class _Start:
         """Take a robot, and maybe some neighbours, to another group; what undoes it."""
         i, group, rng = int(self._rng.integers(len(self._group))), self._group, self._rng
         near = self._near[i]
-        target = self._unused() if not near or rng.random() < ALONE else int(group[rng.choice(near)])
-        others = [j for j in near if rng.random() < HALF] if rng.random() < TOGETHER else []
+        target = self._unused() if not near or rng.random() < self._params.alone else int(group[rng.choice(near)])
+        others = [j for j in near if rng.random() < self._params.half] if rng.random() < self._params.together else []
         homes = {j: int(group[j]) for j in (i, *others) if group[j] != target}
         for j in homes:
             self._move(j, target)
@@ -241,7 +226,7 @@ class _Start:
     def _value(self, label: int) -> float:
         robots = frozenset(np.flatnonzero(self._group == label).tolist()) - self._blind
         if robots not in self._known:
-            if len(self._known) > REMEMBERED:
+            if len(self._known) > self._params.remembered:
                 self._known.clear()
             self._known[robots] = self._task.values(robots)
         return self._known[robots]

@@ -25,14 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["AttackTree", "try_every_attack"]
 
-MOST_OPEN = 200_000
-"""Nodes kept by their bounds, some hundred megabytes; beyond, what the next one is divided into is searched in depth,
-which keeps few more."""
-
-
-AT_ONCE = 1000
-"""Sets of blinded robots whose groups are valued in one batch."""
-
 
 class _AttackNode(NamedTuple):
     """Some robots placed; of nodes of one bound those that placed most go first."""
@@ -112,7 +104,7 @@ class AttackTree:
         children = [self._child(node, g, max(node.bound, value), is_blind=False) for g, value in worth]
         if not self._sees[k] and sum(node.blind) < self._most_blind:
             children += [self._child(node, g, node.bound, is_blind=True) for g in homes]
-        is_full = bool(self._deep) or len(self._open) >= MOST_OPEN
+        is_full = bool(self._deep) or len(self._open) >= self.task.params.branching.most_open
         for child in sorted(children, reverse=True):
             if child.bound >= self.task.bracket.goal:
                 continue
@@ -187,7 +179,7 @@ def try_every_attack(task: AttackTask) -> Stop:
     sizes = [threat.n_blinded] if threat.n_cut else range(threat.n_blinded, -1, -1)
     for cut, groups in partitions_by_few_cuts(threat, task.budget):
         blinded = chain.from_iterable(combinations(free, size) for size in sizes)
-        while some := list(map(frozenset, islice(blinded, AT_ONCE))):
+        while some := list(map(frozenset, islice(blinded, task.params.branching.at_once))):
             task.budget.check()
             left = [[group - blind for group in groups] for blind in some]
             new = list({group: None for parts in left for group in parts if group not in worth})

@@ -10,7 +10,7 @@ from ratt_opt.attack.bounds import bound_by_trees, first_bound, forced_group_bou
 from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import PricingProblem
-from ratt_opt.attack.size_vectors.possible_sizes import LARGEST, possible_sizes_bound, unprotected_bound
+from ratt_opt.attack.size_vectors.possible_sizes import possible_sizes_bound, unprotected_bound
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.threshold_search import ThresholdSearch
@@ -27,31 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CriterionAttack"]
 
-MOST_LISTED, LISTING_SHARE = 3_000_000, 0.1
-"""Groups that an attack may leave for columns to be listed, which take ten bytes each, twice; share of the seconds left
-for the list. A million take a tenth of a second on sparse graphs, and many more on dense ones of 50 robots."""
-
-BRIEFLY_LISTED = 20_000
-"""Groups that a brief attack lists at most."""
-
-LISTED_STARTS = 4
-"""Annealed attacks before the first listed columns."""
-
-DENSE = 0.5
-"""Share of all links from which sizes that groups may have say more than dual prices: a random graph of 24 robots with
-0.7 of all links closes in 6 s by sizes, and not in 60 by prices."""
-
-SMALL = 12
-"""Most robots for which all sets are looked at before anything else: some milliseconds."""
-FIRST_STARTS, INNER_STARTS, STARTS_FOR = 18, 3, 24
-"""Annealed attacks before the first threshold, and within another search or a limit of nodes alone. About every fourth
- start finds the best attack of 24 robots where it is hardest to find (small worlds and hubs, a third blinded).
-The first grow with the square of the robots beyond these 24: half a second of them at 24 robots, 1.4 s at 30."""
-
-INNER_NODES = 500_000
-"""Nodes of the search by prices within another search without limits: some ten seconds. Rankings attack dozens of
-teams, none of which need ever close."""
-
 
 class CriterionAttack(TeamAttack):
     """Conditions and steps of the schedule's rows for a criterion."""
@@ -61,7 +36,7 @@ class CriterionAttack(TeamAttack):
         self._plan, self._objective = task.values.plan, task.problem.information_objective
         self._is_brief = is_inner and isinf(task.budget.seconds_left)
         n_robots, links = task.problem.n_robots, len(task.problem.communication.links)
-        self._is_dense = 2 * links >= DENSE * n_robots * (n_robots - 1)
+        self._is_dense = 2 * links >= task.params.criterion.dense * n_robots * (n_robots - 1)
         self._is_annealed = False
         self._listed: ListedSearch | None = None
         self._sure = 0
@@ -71,7 +46,7 @@ class CriterionAttack(TeamAttack):
 
     def is_small(self) -> bool:
         """Team of at most 12 robots."""
-        return self.task.problem.n_robots <= SMALL
+        return self.task.problem.n_robots <= self.task.params.criterion.small
 
     def has_few_attacks(self) -> bool:
         """Links not all alike; at most 20,000 attacks, or more than 24 robots and as many as soon are tried."""
@@ -111,7 +86,11 @@ class CriterionAttack(TeamAttack):
     def may_have_sizes(self) -> bool:
         """Dense graph, at most 100 robots, packed team, not brief."""
         is_worth_it = self._is_dense and not self._is_brief and self._threat.n_blinded < self.task.problem.n_robots
-        return is_worth_it and self._team is not None and self.task.problem.n_robots <= LARGEST
+        return (
+            is_worth_it
+            and self._team is not None
+            and self.task.problem.n_robots <= self.task.params.possible_sizes.largest
+        )
 
     def has_no_prices(self) -> bool:
         """Criterion of one's own."""
@@ -162,14 +141,15 @@ class CriterionAttack(TeamAttack):
         assert self._prices is not None
         assert self._team is not None
         if self._listed is None:
-            most, part = BRIEFLY_LISTED if self._is_brief else MOST_LISTED, self.task.budget.part(LISTING_SHARE)
+            listed = self.task.params.listed
+            most, part = listed.brief if self._is_brief else listed.most, self.task.budget.part(listed.share)
             groups = groups_of(self._threat)
             if not groups.has_listed(most, part):
                 return
             self._listed = ListedSearch(self.task, self._team, groups)
         if not self._is_annealed:
             self._prices.task = self.task
-            self._prices.anneal(LISTED_STARTS)
+            self._prices.anneal(self.task.params.listed.starts)
         self._listed.task = self.task
         self._listed.run()
 
@@ -177,13 +157,13 @@ class CriterionAttack(TeamAttack):
         """Annealed attacks, and patience for more."""
         assert self._prices is not None
         self._prices.task = self.task
-        self._prices.anneal(INNER_STARTS if self._is_brief else self._starts)
+        self._prices.anneal(self.task.params.criterion.inner_starts if self._is_brief else self._starts)
         self._is_annealed = True
 
     def trees(self) -> None:
         """Unblinded robots that every attack leaves in some group, by tree inequalities, and what that is worth."""
         if self._is_brief and self.task.budget.max_nodes is None:
-            self.task.budget.max_nodes = self.task.budget.nodes + INNER_NODES
+            self.task.budget.max_nodes = self.task.budget.nodes + self.task.params.criterion.inner_nodes
         self._sure = bound_by_trees(self.task, self._objective, is_about_values=not self._is_brief)
 
     def possible_sizes(self) -> None:
@@ -200,7 +180,8 @@ class CriterionAttack(TeamAttack):
 
     @property
     def _starts(self) -> int:
-        return int(FIRST_STARTS * max(self.task.problem.n_robots / STARTS_FOR, 1.0) ** 2)
+        params = self.task.params.criterion
+        return int(params.starts * max(self.task.problem.n_robots / params.starts_for, 1.0) ** 2)
 
     @cached_property
     def _has_time_for_prices(self) -> bool:
@@ -209,12 +190,12 @@ class CriterionAttack(TeamAttack):
 
     @cached_property
     def _team(self) -> Team | None:
-        return Team.of(self._objective, self._plan)
+        return Team.of(self._objective, self._plan, self.task.params)
 
     @cached_property
     def _prices(self) -> ThresholdSearch | None:
         """The search by prices, new or begun, for criteria with compiled code."""
-        plan = PricingProblem.of(self._objective, self._plan, self._threat)
+        plan = PricingProblem.of(self._objective, self._plan, self._threat, self.task.params)
         if plan is None:
             return None
         begun = self.task.memory.search

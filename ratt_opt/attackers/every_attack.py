@@ -5,7 +5,6 @@ How many are few follows from the time that is left: what a batch and a partitio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations, islice
 from math import comb
 from time import perf_counter
@@ -24,25 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["PARAMS", "EveryAttack"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EveryAttackParams:
-    """When all attacks are tried.
-
-    ``share`` : of the time left that it is expected to take at most [1]; a larger one closes more attacks by it, and
-    leaves less time for other stages if it is misjudged. ``most`` : after which it is given up [1]
-    ``seconds`` : expected at most without a limit [s]; ``batch`` : blinded sets valued at once, megabytes of matrices
-    """
-
-    share: float = 0.25
-    most: float = 0.4
-    seconds: float = 5.0
-    batch: int = 2048
-
-
-PARAMS = EveryAttackParams()
+__all__ = ["EveryAttack"]
 
 
 class EveryAttack:
@@ -67,7 +48,7 @@ class EveryAttack:
         began = perf_counter()
         threat.graph.groups(tuple(islice(sorted(threat.graph.links), threat.n_cut)))
         partition = perf_counter() - began
-        rows = min(blinded, PARAMS.batch)
+        rows = min(blinded, self._task.params.every_attack.batch)
         blind, value = np.zeros((rows, len(self._rows)), dtype=np.bool_), np.inf
         for _ in range(2):  # the first call is slower
             began = perf_counter()
@@ -78,7 +59,7 @@ class EveryAttack:
     def is_soon(self) -> bool:
         """Tell whether all attacks can be enumerated in a share of the remaining time."""
         left = self._task.budget.seconds_left
-        most = PARAMS.seconds if np.isinf(left) else PARAMS.share * left
+        most = self._task.params.every_attack.seconds if np.isinf(left) else self._task.params.every_attack.share * left
         return not _are_many(self._threat, len(self._free)) and self.seconds <= most
 
     def run(self) -> Stop:
@@ -102,7 +83,7 @@ class EveryAttack:
     def _batches(self) -> Iterator[IntArray]:
         """(K, n_blinded) the sets of robots that may be blinded, some at a time."""
         every = combinations(self._free, self._threat.n_blinded)
-        while some := list(islice(every, PARAMS.batch)):
+        while some := list(islice(every, self._task.params.every_attack.batch)):
             yield np.array(some, dtype=np.int64).reshape(len(some), self._threat.n_blinded)
 
     def _worst(self, groups: list[tuple[int, ...]], blinded: IntArray, upper: float) -> int | None:

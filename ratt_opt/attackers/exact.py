@@ -6,6 +6,7 @@ import math
 from numbers import Real
 from typing import TYPE_CHECKING
 
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.all_sets import can_enumerate_subsets
 from ratt_opt.attack.staging import recorded, run_stages
 from ratt_opt.attack.task import (
@@ -22,7 +23,7 @@ from ratt_opt.attackers.any_function import metered_problem
 from ratt_opt.attackers.attack_tree import AttackTree
 from ratt_opt.attackers.criterion_attack import CriterionAttack
 from ratt_opt.attackers.heuristics import bounded_rational_attack
-from ratt_opt.attackers.schedule import CRITERION, USER_FUNCTION
+from ratt_opt.attackers.schedule import criterion_stages, stages_by_values
 from ratt_opt.attackers.team_attack import TeamAttack, last_stage
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.errors import InputError
@@ -34,13 +35,11 @@ from ratt_opt.setfunctions.metered import unmetered
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.problem import Problem
 
 __all__ = ["worst_case_attack", "worst_case_attack_unrounded"]
 
-RENEWED = 4
-"""Growth of the seconds since an earlier attack on the plan from which its first stages, which had shares of them, are
-run again before its last one goes on."""
 
 UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
 
@@ -58,6 +57,7 @@ def worst_case_attack(
     aim: float = -math.inf,
     known: Attack | None = None,
     memory: AttackMemory | None = None,
+    params: AttackParams | None = None,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -88,6 +88,7 @@ def worst_case_attack(
     known : an attack to begin with; the one found is no better for the team
     memory : of earlier attacks on this plan that a budget ended: both ends are taken from there, and prices, or
         partitions, are gone on with; what this one finds out is left there
+    params : of the stages and their algorithms: they decide how soon the bracket closes, not whether it holds
 
     Raises
     ------
@@ -107,6 +108,7 @@ def worst_case_attack(
         aim=aim,
         known=known,
         memory=memory,
+        params=params,
     )
     return widened_result(memory.searched_of(problem), problem.check_plan(elements), found)
 
@@ -122,6 +124,7 @@ def worst_case_attack_unrounded(
     aim: float = -math.inf,
     known: Attack | None = None,
     memory: AttackMemory | None = None,
+    params: AttackParams | None = None,
 ) -> AttackResult:
     """:func:`worst_case_attack` for other searches: both ends as they were computed."""
     own = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
@@ -149,7 +152,9 @@ def worst_case_attack_unrounded(
             memory.bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
         memory.bracket.check_aim()
         is_inner = budget is not None or max_nodes is not None
-        task = AttackTask(asked, values, memory.bracket, own, memory, records)
+        task = AttackTask(
+            asked, values, memory.bracket, own, memory, records, parameters.DEFAULT if params is None else params
+        )
         stop = _search(task, is_inner=is_inner)
     except OutOfBudget as out:
         stop = out.stop
@@ -184,11 +189,13 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
     if isinstance(begun, AttackTree):
         goes_on = is_criterion or not can_enumerate_subsets(task)
     else:
-        goes_on = task.budget.seconds_left <= RENEWED * task.memory.seconds
+        goes_on = task.budget.seconds_left <= task.params.stages.renewed * task.memory.seconds
     if begun is not None and goes_on:
         with recorded(task, "earlier search, resumed"):
             return last_stage(task, begun)
     task.memory.seconds = task.budget.seconds_left
     if is_criterion:
-        return run_stages(CRITERION, CriterionAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
-    return run_stages(USER_FUNCTION, TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
+        return (
+            run_stages(criterion_stages(task.params.stages), CriterionAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
+        )
+    return run_stages(stages_by_values(task.params.stages), TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC

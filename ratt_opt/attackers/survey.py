@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.problem import Problem
 
@@ -36,6 +37,7 @@ def attack_survey(
     seed: int = 0,
     budget: Budget | None = None,
     attackers: Mapping[str, Callable[[Problem, IntArray], Attack | AttackResult]] | None = None,
+    params: AttackParams | None = None,
 ) -> dict[str, AttackResult]:
     """Attack one plan exactly and with every heuristic: name -> result.
 
@@ -47,6 +49,7 @@ def attack_survey(
     budget : an outer search's budget: its seconds and interrupts count too
     attackers : attackers of your own by name, ``(problem, elements) -> Attack`` as in missions; what their attacks
         leave is computed here, and they prove nothing
+    params : of the exact attack
 
     Raises
     ------
@@ -57,7 +60,7 @@ def attack_survey(
     seconds = None if time_limit is None else EXACT_SHARE * time_limit
     results: ByCurrentName[AttackResult] = ByCurrentName(
         {
-            "worst": worst_case_attack(problem, elements, time_limit=seconds, budget=own),
+            "worst": worst_case_attack(problem, elements, time_limit=seconds, budget=own, params=params),
             "bounded_rational": bounded_rational_attack(problem, elements),
             "greedy": greedy_attack(problem, elements, budget=own),
             "random": random_attack(problem, elements, seed=seed),

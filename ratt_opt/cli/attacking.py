@@ -55,6 +55,9 @@ def attack(
     explain: Annotated[
         bool, typer.Option("--explain", help="Also say which stages of the exact attack ran, and what each proved.")
     ] = False,
+    params: Annotated[
+        Path | None, typer.Option("--params", help="TOML: parameters of the exact attack that are not as by default.")
+    ] = None,
     as_json: JsonFlag = False,
     as_latex: LatexFlag = False,
 ) -> None:
@@ -62,6 +65,7 @@ def attack(
 
     An interrupt (Ctrl-C) prints what was found so far and exits with 130.
     """
+    from ratt_opt.attack.params.reading import changed, read_attack_params
     from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
     from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
     from ratt_opt.attackers.robot_choice import robots_to_protect
@@ -79,12 +83,13 @@ def attack(
         raise InputError("--below", "must be a finite number", below)
     if replan and below is None and rms is None:
         raise InputError("--replan", "must come with --below or --rms", replan)
+    chosen = read_attack_params(params)
     source = load_input(file)
     problem = source.problem(objective)
     elements = load_plan(plan, problem)
     budget = Budget()
     within: dict[str, Any] = {"time_limit": time_limit, "budget": budget}
-    results = attack_survey(problem, elements, seed=seed, **within)
+    results = attack_survey(problem, elements, seed=seed, params=chosen, **within)
     critical = _found(budget, lambda: criticality_ranking(problem, elements, **within)[:rank] if rank else None)
     budgets = None
     if below is not None or rms is not None:
@@ -100,7 +105,11 @@ def attack(
         near = None if reach is None else sorted(set(source.pairs_within(reach)) - problem.communication.links)
         links["add"] = _found(budget, lambda: links_to_add(problem, elements, add, candidates=near, **within))
     found = {name: best for name, best in links.items() if best is not None}
-    beside: dict[str, Any] = {"best_links": found, "best_robots": robots, "explains": explain}
+    beside: dict[str, Any] = {
+        "best_links": found,
+        "best_robots": robots,
+        "params": changed(chosen) if explain else None,
+    }
     if as_json:
         print_json(attack_document(objective, elements, results, critical, budgets, **beside))
     else:

@@ -81,12 +81,12 @@ def attack_document(
     *,
     best_links: Mapping[str, BestLinks] | None = None,
     best_robots: BestRobots | None = None,
-    explains: bool = False,
+    params: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Return the attacks on one plan as JSON-ready values, and what to protect or add, if wanted.
 
     ``best_links`` : by what is done with them, "protect" and "add"; ``best_robots`` : to protect
-    ``explains`` : also which stages of the exact attack ran, and what each did
+    ``params`` : of the exact attack that are not as by default; then also which stages ran, and what each did
     """
     document = {
         "format": "ratt-opt attack",
@@ -95,7 +95,8 @@ def attack_document(
         "elements": elements.tolist(),
         "attacks": {name: result.to_dict() for name, result in results.items()},
     }
-    if explains:
+    if params is not None:
+        document["params"] = dict(params)
         document["stages"] = [row.to_dict() for row in results["worst"].stages]
     if critical:
         document["critical"] = [_critical(row) for row in critical]

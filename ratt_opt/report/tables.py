@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ratt_opt._rounding import bracket_text, down, up
 from ratt_opt.report.description import describe
@@ -55,18 +55,18 @@ def attack_tables(
     *,
     best_links: Mapping[str, BestLinks] | None = None,
     best_robots: BestRobots | None = None,
-    explains: bool = False,
+    params: Mapping[str, Any] | None = None,
     names: Sequence[str] = (),
 ) -> Iterable[Table]:
     """Yield the attacks on a plan, and, if wanted, what to protect or add and what pushes it past the ``goal``.
 
     ``names`` : (N,) robots for people, by their numbers where empty
     ``best_links`` : by what is done with them, "protect" and "add"; ``best_robots`` : to protect
-    ``explains`` : also which stages of the exact attack ran, and what each did
+    ``params`` : of the exact attack that are not as by default; then also which stages ran, and what each did
     """
     yield _attacks(results)
-    if explains:
-        yield _stages(results["worst"])
+    if params is not None:
+        yield _stages(results["worst"], params)
     if critical is not None:
         yield _critical(critical, names)
     if budgets is not None:
@@ -103,13 +103,17 @@ def _attacks(results: Mapping[str, AttackResult]) -> Table:
     return table
 
 
-def _stages(exact: AttackResult) -> Table:
-    """One row a stage that ran: how long, and which ends of the bracket it moved."""
+def _stages(exact: AttackResult, params: Mapping[str, Any]) -> Table:
+    """One row a stage that ran: how long, and which ends of the bracket it moved; ``params`` not as by default."""
     table = _table("how the exact attack came to this", "stage", "seconds", "nodes", "worst case at least", "at most")
     for row in exact.stages:
         lower, upper = _moved(row.lower_before, row.lower, down), _moved(row.upper_before, row.upper, up)
         table.add_row(row.name, f"{row.seconds:.3f}", f"{row.nodes:,}", lower, upper)
-    table.caption = "stages that do not apply to this problem are not shown; within the search, before rounding outward"
+    told = ", ".join(f"{place} = {value}" for place, value in params.items()) or "all as by default"
+    table.caption = (
+        "stages that do not apply to this problem are not shown; within the search, before rounding outward"
+        f"\nparameters: {told}"
+    )
     return table
 
 

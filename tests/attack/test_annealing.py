@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack import annealing as module
 from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.params import AnnealingParams
 from ratt_opt.attack.team import Links, Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case
@@ -20,7 +20,7 @@ def starts_of(problem, plan, *, has_table=False, **options):
         chosen = np.zeros((2**problem.n_robots, problem.objective.n), np.bool_)
         chosen[:, plan] = np.arange(2**problem.n_robots)[:, None] >> np.arange(problem.n_robots) & 1
         source = problem.objective.evaluate(chosen)
-    return Starts(source, Links.of(problem.threat), problem.threat, **options)
+    return Starts(source, Links.of(problem.threat), problem.threat, AnnealingParams(), **options)
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -59,17 +59,17 @@ def test_hubs_where_soft_link_budgets_and_norms_end_at_milder_attacks(seed, n_bl
 def test_starts_become_longer(monkeypatch):
     problem, plan = team_problem(1, 6)
     starts, made = starts_of(problem, plan, moves=10), []
-    plain = Starts._go_on
+    plain = Starts._anneal
 
-    def counted(starts, arrays, part, *others):
-        made.append(part[-1])
-        return plain(starts, arrays, part, *others)
+    def counted(starts, *given):
+        made.append(given[3])
+        return plain(starts, *given)
 
-    monkeypatch.setattr(Starts, "_go_on", counted)
-    for _ in range(3 * module.LONGER + 1):
+    monkeypatch.setattr(Starts, "_anneal", counted)
+    for _ in range(3 * AnnealingParams().longer + 1):
         starts.next(Budget())
     assert sorted(made) == made
-    assert (made[0], made[-1]) == (60, 60 * module.LONGEST)
+    assert (made[0], made[-1]) == (10, 10 * AnnealingParams().longest)
 
 
 def test_no_start_after_the_time():

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from ctypes import c_uint64
+from dataclasses import replace
 from itertools import combinations
 
 import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt.attack import pricing
-from ratt_opt.attack.pricing import BLINDED, UNIT, GroupSearch, PricingProblem, Question
+from ratt_opt import AttackParams
+from ratt_opt.attack.params import PricingParams
+from ratt_opt.attack.pricing import BLINDED, UNIT, GroupSearch, PricingProblem, Question, _least_cuts
 from ratt_opt.attack.team import Links
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
@@ -19,15 +21,10 @@ from tests.attack.pricing_definition import least_cost, paying_groups, reduced_c
 from tests.strategies import OBJECTIVES, information_data, team_problem
 
 
-@pytest.fixture(params=["pairs", "single robots"], autouse=True)
-def _levels(request, monkeypatch):
+@pytest.fixture(params=["pairs", "single robots"])
+def params(request):
     """Small teams go the way of large ones, too."""
-    if request.param == "single robots":
-        monkeypatch.setattr(pricing, "MOST_PAIRED", 0)
-
-
-def plan_of(problem, plan):
-    return PricingProblem.of(problem.objective, plan, problem.threat)
+    return AttackParams() if request.param == "pairs" else AttackParams(pricing=PricingParams(paired=0))
 
 
 def question_of(threshold, prices, limit, most):
@@ -50,10 +47,13 @@ def cost_of(problem, column, prices):
 
 @pytest.mark.parametrize("nodes", [1, 10**9])
 @pytest.mark.parametrize("seed", range(20))
-def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes):
+def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes, params):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
-    team, prices = plan_of(problem, plan), (rng.uniform(0, 2, 7), rng.uniform(0.2, 2))
+    team, prices = (
+        PricingProblem.of(problem.objective, plan, problem.threat, params),
+        (rng.uniform(0, 2, 7), rng.uniform(0.2, 2)),
+    )
     threshold = problem.objective(plan) * rng.uniform(0.4, 0.9)
     question = question_of(threshold, prices, 0.5, team.most_below(threshold))
     search = GroupSearch(team, question, rng.permutation(7))
@@ -65,10 +65,13 @@ def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes):
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_a_group_is_found_or_there_is_none(seed):
+def test_a_group_is_found_or_there_is_none(seed, params):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, (0.3, 0.5, 0.9)[seed % 3], seed=seed))
-    team, threshold = plan_of(problem, plan), problem.objective(plan) * rng.uniform(0.4, 1.1)
+    team, threshold = (
+        PricingProblem.of(problem.objective, plan, problem.threat, params),
+        problem.objective(plan) * rng.uniform(0.4, 1.1),
+    )
     prices = rng.uniform(0, 2, 6), rng.uniform(0.0, 2)
     raised = max(least_cost(problem, plan, threshold, prices), 0) + 0.5  # some groups cost less than nothing
     if not np.isfinite(raised):
@@ -90,14 +93,14 @@ def test_a_group_is_found_or_there_is_none(seed):
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_no_set_below_a_threshold_is_larger_than_said(seed):
+def test_no_set_below_a_threshold_is_larger_than_said(seed, params):
     """Targets of one to four coordinates; small sets are decided exactly."""
     rng, dimension = np.random.default_rng(seed), 1 + seed % 4
     prior, information = information_data(rng, 7, 3, dimension)
     threat = Threat(CommunicationGraph(7, frozenset()), 2, 0)
     for objective in (cls(prior, information) for cls in OBJECTIVES.values()):
         sets = [s for k in range(8) for s in combinations(range(7), k)]
-        team = PricingProblem.of(objective, np.arange(7), threat)
+        team = PricingProblem.of(objective, np.arange(7), threat, params)
         for share in (*rng.uniform(0, 1, 3), 0.0, 1.1):
             threshold = share * objective(range(7))
             below = {s for s in sets if objective(s) < threshold}
@@ -109,22 +112,25 @@ def test_no_set_below_a_threshold_is_larger_than_said(seed):
 
 
 @pytest.mark.parametrize("dimension", [2, 4])
-def test_averages_alone_are_exact_for_robots_that_are_alike(dimension, monkeypatch):
-    monkeypatch.setattr(pricing, "EFFORT_WORK", 0)
+def test_averages_alone_are_exact_for_robots_that_are_alike(dimension, params):
+    params = replace(params, pricing=replace(params.pricing, work=0))
     prior, information = information_data(np.random.default_rng(dimension), 1, 3, dimension)
     threat = Threat(CommunicationGraph(30, frozenset()), 2, 0)
     for criterion in OBJECTIVES.values():
         alike = criterion(prior, np.repeat(information, 30, axis=0))
         worth = alike(range(12))
         if worth > 1e-6:
-            assert PricingProblem.of(alike, np.arange(30), threat).most_below(worth * (1 - 1e-6)) <= 11
+            assert PricingProblem.of(alike, np.arange(30), threat, params).most_below(worth * (1 - 1e-6)) <= 11
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
+def test_annealed_groups_are_real_and_mostly_the_cheapest(seed, params):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
-    team, threshold = plan_of(problem, plan), problem.objective(plan) * rng.uniform(0.4, 0.9)
+    team, threshold = (
+        PricingProblem.of(problem.objective, plan, problem.threat, params),
+        problem.objective(plan) * rng.uniform(0.4, 0.9),
+    )
     prices, found, random = (rng.uniform(0, 2, 7), rng.uniform(0.2, 2)), [], c_uint64(seed + 1)
     question = question_of(threshold, prices, 0.0, 7)
     for first, one in enumerate(team.annealed(question, 2_000, (4.0, 0.1), random)):
@@ -146,7 +152,7 @@ def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
 @pytest.mark.parametrize("seed", range(10))
 def test_groups_of_a_size_cut_no_fewer_links_than_said(seed):
     graph = nx.gnp_random_graph(8, (0.2, 0.5, 0.8, 1.0)[seed % 4], seed=seed)
-    least = pricing._least_cuts(Threat(CommunicationGraph(8, frozenset(graph.edges)), 1, 0))
+    least = _least_cuts(Threat(CommunicationGraph(8, frozenset(graph.edges)), 1, 0))
     for size in range(9):
         assert least[size] <= min(nx.cut_size(graph, group) for group in combinations(range(8), size))
     if nx.density(graph) == 1.0:

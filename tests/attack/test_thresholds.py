@@ -12,6 +12,7 @@ from ratt_opt.attack.all_sets import decide
 from ratt_opt.attack.columns import UNIT, Columns, IntegerDuals
 from ratt_opt.attack.exact_cover import ExactCover
 from ratt_opt.attack.master import best_duals
+from ratt_opt.attack.params import MasterParams
 from ratt_opt.attack.sets_below import SetsBelow
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
@@ -151,7 +152,7 @@ def test_duals_and_covers_against_all_covers(seed):
                 yield from covers(left ^ mask, blinded - int(columns.blinded[k]), cut + int(columns.cuts[k]))
 
     costs = list(covers(2**robots - 1, n_blinded, 0))
-    duals = best_duals(columns, n_blinded, most_cut, Budget()).duals
+    duals = best_duals(columns, n_blinded, most_cut, Budget(), MasterParams()).duals
     reduced = [
         UNIT * int(cut) + duals.blinding * int(blind) - sum(int(duals.robots[i]) for i in members(int(mask)))
         for mask, cut, blind in zip(columns.groups, columns.cuts, columns.blinded, strict=True)

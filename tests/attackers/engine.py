@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import ratt_opt as ro
+from ratt_opt import AttackParams
 from ratt_opt.attack import all_sets
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.dual_prices import ThresholdDecision
-from ratt_opt.attack.least_sets import least_set_search as set_search
 from ratt_opt.attack.listed_columns import ListedSearch
 from ratt_opt.attack.pricing import PricingProblem
-from ratt_opt.attack.size_vectors import decision as size_decision
 from ratt_opt.attack.size_vectors import size_vector_search
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
@@ -28,7 +28,6 @@ from ratt_opt.attack.team import Links, Team
 from ratt_opt.attack.threshold_search import ThresholdSearch
 from ratt_opt.attackers import (
     attack_tree,
-    criterion_attack,
     criticality,
     exact,
     survey,
@@ -82,11 +81,11 @@ class Once:
 
 
 def _packed(task: AttackTask) -> Team | None:
-    return Team.of(task.problem.objective, task.values.plan)
+    return Team.of(task.problem.objective, task.values.plan, task.params)
 
 
 def _priced(task: AttackTask) -> ThresholdSearch:
-    plan = PricingProblem.of(task.problem.objective, task.values.plan, task.problem.threat)
+    plan = PricingProblem.of(task.problem.objective, task.values.plan, task.problem.threat, task.params)
     return ThresholdSearch(task, plan, ThresholdDecision(plan))
 
 
@@ -139,7 +138,7 @@ class Search:
 
     def run(self, budget: Budget) -> Stop | None:
         """Begin, or go on, within a budget; why it stopped."""
-        task = AttackTask(self.problem, self.values, self.bracket, budget)
+        task = AttackTask(self.problem, self.values, self.bracket, budget, params=parameters.DEFAULT)
         try:
             if self._search is None:
                 self._search = SEARCHES[self.name](task)
@@ -157,14 +156,18 @@ def searched(name: str, problem: Problem, plan: object, first: Attack | None = N
 
 
 NO_LISTS = {
-    (set_search, "WHOLE"): ((10**9, 0),),
-    (set_search, "FEWEST"): 1,
-    (set_search, "MOST"): 1,
+    (AttackParams, "set_search.whole"): ((10**9, 0),),
+    (AttackParams, "set_search.fewest"): 1,
+    (AttackParams, "set_search.most"): 1,
 }
 """Hardly any search in depth of sets of one size, so that bounds and branches decide."""
-FAMILIES = {(size_decision, "PACKED"): -1}
+FAMILIES = {(AttackParams, "packing.packed"): -1}
 """All families of a vector of sizes are searched at once."""
-PACKED = {(size_decision, "PACKED"): 100, (size_decision, "NODES_OF_SET"): 1, (size_decision, "NODES_OF_PACKING"): 1}
+PACKED = {
+    (AttackParams, "packing.packed"): 100,
+    (AttackParams, "packing.nodes_of_set"): 1,
+    (AttackParams, "packing.nodes_of_packing"): 1,
+}
 """The other groups are packed around each largest one."""
 NO_TABLES = {
     (all_sets, "LARGEST_VALUED"): 0,
@@ -172,7 +175,7 @@ NO_TABLES = {
     (team_attack, "LARGEST_VALUED"): 0,
 }
 """Sets of robots are too many to be looked at."""
-LARGE = NO_TABLES | {(criterion_attack, "SMALL"): 0}
+LARGE = NO_TABLES | {(AttackParams, "criterion.small"): 0}
 """Small teams are attacked as large ones are."""
 COMMAND = {
     "attack_survey": survey,
@@ -184,9 +187,9 @@ COMMAND = {
 """What the command ``attack`` asks for, in this order, and where it is."""
 WAYS = {
     "listed columns": {},
-    "dual prices": {(criterion_attack, "MOST_LISTED"): 0, (criterion_attack, "BRIEFLY_LISTED"): 0},
-    "dense": {(criterion_attack, "DENSE"): 0.0},
-    "no lists": NO_LISTS | {(size_vector_search, "ALIKE"): 0.0},
+    "dual prices": {(AttackParams, "listed.most"): 0, (AttackParams, "listed.brief"): 0},
+    "dense": {(AttackParams, "criterion.dense"): 0.0},
+    "no lists": NO_LISTS | {(AttackParams, "size_vectors.alike"): 0.0},
     "families": FAMILIES,
     "packed": PACKED,
 }
@@ -200,7 +203,7 @@ def size_vectors(most: int) -> Way:
 
 def open_nodes(most: int) -> Way:
     """Nodes of branch and bound that are kept by their bounds."""
-    return {(attack_tree, "MOST_OPEN"): most}
+    return {(AttackParams, "branching.most_open"): most}
 
 
 def share_of_attacks(share: float) -> Way:
@@ -220,15 +223,18 @@ def exchanges_near(monkeypatch: pytest.MonkeyPatch, instead: Callable) -> None:
 
 def watch(monkeypatch: pytest.MonkeyPatch, name: str, called: Callable) -> None:
     """Let ``called(search, run)`` run the stages of a name; ``run(search)`` is what they are otherwise."""
-    for table in ("CRITERION", "USER_FUNCTION"):
-        stages = (
-            replace(stage, run=lambda search, run=stage.run: called(search, run)) if stage.name == name else stage
-            for stage in getattr(exact, table)
-        )
-        monkeypatch.setattr(exact, table, tuple(stages))
+    for table in ("criterion_stages", "stages_by_values"):
+        monkeypatch.setattr(exact, table, _watched(getattr(exact, table), name, called))
+
+
+def _watched(table: Callable, name: str, called: Callable) -> Callable:
+    def one(stage):
+        return replace(stage, run=lambda search: called(search, stage.run)) if stage.name == name else stage
+
+    return lambda share: [one(stage) for stage in table(share)]
 
 
 def annealed_value(problem: Problem, plan: object, seed: int) -> float:
     """What one annealed attack leaves, from a start that the engine does not make."""
     team = Team.of(problem.objective, np.asarray(plan))
-    return Starts(team, Links.of(problem.threat), problem.threat, seed=seed).next(Budget()).value
+    return Starts(team, Links.of(problem.threat), problem.threat, team.params.annealing, seed=seed).next(Budget()).value

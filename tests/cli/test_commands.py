@@ -312,6 +312,16 @@ def test_attack_explains_its_bracket(scenario_file: Path, tmp_path: Path, capsys
     assert document["stages"][-1]["upper"] == pytest.approx(document["attacks"]["worst"]["upper"])
     assert run([*command, "--explain"]) == 0
     assert document["stages"][0]["stage"] in capsys.readouterr().out
+    params = tmp_path / "params.toml"
+    params.write_text("[annealing]\nmoves = 100\n[set_search]\nwhole = [[1000, 10]]\n")
+    assert run([*command, "--explain", "--json", "--params", str(params)]) == 0
+    explained = json.loads(capsys.readouterr().out)
+    assert explained["params"] == {"annealing.moves": 100, "set_search.whole": [[1000, 10]]}
+    assert explained["attacks"]["worst"]["upper"] == pytest.approx(document["attacks"]["worst"]["upper"])
+    params.write_text("[annealing]\nmoves = -1\n")
+    refused([*command, "--params", str(params)], capsys, "params.annealing.moves must be at least 0 and finite; got -1")
+    params.write_text("[annealing]\nsteps = 1\n")
+    refused([*command, "--params", str(params)], capsys, "params.annealing must name some of moves")
     assert run([*command, "--json"]) == 0
     assert "stages" not in json.loads(capsys.readouterr().out)
 

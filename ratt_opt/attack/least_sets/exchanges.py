@@ -24,15 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["descended", "exchanged", "new_scan", "weak_sets_of_size"]
 
-RANDOM_STARTS = 40
-"""Starts beside those that the data suggest; each costs a local search, and with a few dozen in all attacks on teams of
-thirty were hardly ever too weak."""
-WORK = 3_000_000
-"""Exchanges times targets in one step of all starts together; large teams afford fewer starts."""
-FEWEST_STARTS = 4
-"""Starts that every team gets, whatever they cost."""
-SEED = 0
-"""Seed of the random starts: the same for every call, so that attacks are reproducible."""
 BARRED, INSIDE, OUTSIDE = 0, 1, 2
 """State of a robot; a barred one takes part in no exchange."""
 
@@ -75,7 +66,11 @@ def weak_sets_of_size(team: Team, size: int, budget: Budget | None = None) -> li
     step = max(size * (n_robots - size) * n_targets, 1)
     found: dict[frozenset[int], float] = {}
     own = budget or Budget()
-    for _, start in zip(range(max(WORK // step, FEWEST_STARTS)), _starts(team, size), strict=False):
+    for _, start in zip(
+        range(max(team.params.set_exchanges.work // step, team.params.set_exchanges.fewest_starts)),
+        _starts(team, size),
+        strict=False,
+    ):
         where = np.full(n_robots, OUTSIDE, dtype=np.int8)
         where[start] = INSIDE
         _settle(team, team.prior, where, own)
@@ -90,11 +85,11 @@ def weak_sets_of_size(team: Team, size: int, budget: Budget | None = None) -> li
 def _starts(team: Team, size: int) -> Iterator[IntArray]:
     yield np.argsort(team.single, kind="stable")[:size]
     traces = team.traces
-    rng = np.random.default_rng(SEED)
+    rng = np.random.default_rng(team.params.set_exchanges.seed)
     targets = rng.permutation(traces.shape[1])
     for j in targets:
         yield np.argsort(traces[:, j], kind="stable")[:size]
-    for _ in range(RANDOM_STARTS):
+    for _ in range(team.params.set_exchanges.random_starts):
         yield rng.permutation(len(traces))[:size]
 
 

@@ -30,18 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["LeastSetSearch", "SetNode"]
 
-WHOLE, BY_AXIS = ((32, 200_000), (10**9, 40_000)), 10_000
-"""(Robots of a team up to, partial sets of the search in depth before branch and bound begins), and at most that many
-if one axis decides, as bounds are quick then. It decides 16 of 30 robots in 5,000, 21 in 100,000, 18 of 60 in 40,000,
-and 22 of 40 in 800,000, which branch and bound takes a third of the time for."""
-FEWEST, MOST = 1_000, 4_000
-"""Fewest and most partial sets of the search in depth at a node, before it is divided.
-There are more after successes and fewer after failures. With ten times as many, 22 of 40 and 32 of 60 robots took twice
-the time."""
-HEAVY_ROBOTS = ((50, 4), (10**9, 5))
-"""(Undecided robots up to, robots per target whose patterns the underestimator enumerates): few nodes are afforded
-above. Each doubles the polytopes and sharpens the bound: with two instead of four, 1.7 times the nodes at 40 robots."""
-
 
 @dataclass(frozen=True, slots=True, order=True)
 class SetNode:
@@ -131,7 +119,7 @@ class LeastSetSearch:
         self._open, left = [root], root.undecided(team)
         is_wide = len(inside) < size <= len(inside) + len(left)
         self._whole: BoundedSets | None = self._sets(root, left) if is_wide else None
-        self._serial, self._work = 1, MOST
+        self._serial, self._work = 1, self.team.params.set_search.most
         self._in_hand: SetNode | None = None
         """The node that is being looked at."""
 
@@ -162,8 +150,8 @@ class LeastSetSearch:
 
     def _search_whole(self, sets: BoundedSets, budget: Budget) -> Found:
         """Search in depth without bounds; to the end if there are none."""
-        most = next(nodes for robots, nodes in WHOLE if self.team.robots <= robots)
-        most = min(most, BY_AXIS) if self.team.is_by_axis else most
+        most = next(nodes for robots, nodes in self.team.params.set_search.whole if self.team.robots <= robots)
+        most = min(most, self.team.params.set_search.by_axis) if self.team.is_by_axis else most
         most = most if self._in_depth is None else min(most, self._in_depth)
         while sets.nodes < most or not self.team.is_planar:
             found = sets.next(self.threshold, sets.nodes + most + 1, budget)
@@ -198,7 +186,9 @@ class LeastSetSearch:
             finished = found is False
             if found:
                 yield found
-        self._work = min(max(int(self._work * (1.3 if finished else 0.8)), FEWEST), MOST)
+        params = self.team.params.set_search
+        factor = params.after_success if finished else params.after_failure
+        self._work = min(max(int(self._work * factor), params.fewest), params.most)
         if not finished:
             for child in node.split(robots, node.bound, self._serial):
                 heapq.heappush(self._open, child)
@@ -212,7 +202,7 @@ class LeastSetSearch:
             return replace(node, bound=max(node.bound, axis.bound), is_bounded=True), axis.chosen
         if not self.team.is_planar or size == len(robots):
             return replace(node, underestimator=None, is_bounded=True), first
-        heavy = next(heavy for most, heavy in HEAVY_ROBOTS if len(robots) <= most)
+        heavy = next(heavy for most, heavy in self.team.params.set_search.heavy if len(robots) <= most)
         underestimator = affine_underestimator(family, heavy, self.threshold, node.underestimator, budget)
         weakest = np.lexsort((underestimator.scores, -underestimator.fraction))[:size]
         return replace(

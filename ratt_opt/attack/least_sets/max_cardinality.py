@@ -19,14 +19,6 @@ __all__ = ["MaxCardinalityBelow"]
 NONE = -64
 """Number for a group whose protected robots alone reach the threshold: more must be blinded than there are."""
 
-ENLARGING = 1_000
-"""Nodes for the question whether a limit holds with one more robot. Without an end, these take ten times the seconds of
-all others on networks of 50 robots, which then stay open."""
-
-IN_DEPTH = 4_000
-"""Partial sets that a question looks at before branch and bound: with ten times as many, dense networks of 50 robots
-take two to three times the seconds; networks of 30 robots take the same."""
-
 
 class MaxCardinalityBelow:
     """Answers for one threshold; groups, and sets of robots, are bit masks. Protected robots of a group always sense.
@@ -71,7 +63,9 @@ class MaxCardinalityBelow:
             return
         self.limits.append((group, most))
         for i in self._strongest:
-            if not group >> i & 1 and not self._is_below(group | 1 << i, most + 1, budget, ENLARGING):
+            if not group >> i & 1 and not self._is_below(
+                group | 1 << i, most + 1, budget, self._team.params.limits.enlarging
+            ):
                 group |= 1 << i
                 self.limits[-1] = group, most
 
@@ -105,7 +99,12 @@ class MaxCardinalityBelow:
                 frozenset(robots_of(one)) for one in (group & self._protected, ~group & ((1 << self._robots) - 1))
             )
             search = LeastSetSearch(
-                self._team, size, self._threshold, inside=inside, outside=outside, in_depth=IN_DEPTH
+                self._team,
+                size,
+                self._threshold,
+                inside=inside,
+                outside=outside,
+                in_depth=self._team.params.limits.in_depth,
             )
             self._asked = group, size, search
         began = budget.nodes

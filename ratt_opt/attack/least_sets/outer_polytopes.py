@@ -20,18 +20,9 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attack.least_sets.sets_of_size import SetFamily
+    from ratt_opt.attack.params.least_sets import PolytopeParams
 
 __all__ = ["OuterPolytopes", "outer_polytopes", "target_values"]
-
-
-SPHERE, RANK_ONE = 10, 8
-"""Directions of half-spaces beside the box: spread evenly where a family has no parent, and along lines of sight. Each
-tightens a polytope and adds vertices to it; all of them, a parent's and the box have to fit the 64 bits of a row set.
-With four instead of ten at 40 robots: a tenth fewer nodes for trace, a tenth more for log-det, the same time."""
-CAPACITY = 160
-"""Vertices kept per polytope: with up to 64 half-spaces, rarely more than 100."""
-SAFETY = 1e-9
-"""Relative amount by which every half-space is widened against rounding; distinct per row, so no two meet."""
 
 
 def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
@@ -43,7 +34,7 @@ def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
 
 
 def _cut_polytopes(
-    normals: FloatArray, offsets: FloatArray, factors: FloatArray
+    normals: FloatArray, offsets: FloatArray, factors: FloatArray, capacity: int
 ) -> tuple[FloatArray, NDArray[np.uint64], IntArray]:
     """Vertices of many polytopes in three dimensions.
 
@@ -55,7 +46,7 @@ def _cut_polytopes(
     capacity did not suffice
     """
     n_targets, n_patterns, n_rows = offsets.shape
-    most = n_targets * n_patterns * CAPACITY
+    most = n_targets * n_patterns * capacity
     vertices, rows, numbers = (
         np.empty((most, 3)),
         np.empty(most, np.uint64),
@@ -64,7 +55,7 @@ def _cut_polytopes(
     normals, offsets, factors = map(np.ascontiguousarray, (normals, offsets, factors))
     given = address(normals), address(offsets), address(factors)
     found = address(vertices), address(rows), address(numbers)
-    total = loops.cut_polytopes(n_targets, n_patterns, n_rows, CAPACITY, *given, *found)
+    total = loops.cut_polytopes(n_targets, n_patterns, n_rows, capacity, *given, *found)
     return vertices[:total].copy(), rows[:total].copy(), numbers
 
 
@@ -102,7 +93,7 @@ class OuterPolytopes:
 def outer_polytopes(family: SetFamily, n_heavy: int, further: FloatArray | None = None) -> OuterPolytopes:
     """Vertices of the outer polytopes of a family, with ``n_heavy`` robots per target enumerated.
 
-    ``further`` : (M, A, 3) half-space normals, as slopes in (a, b, c), beside a box and ``RANK_ONE`` directions;
+    ``further`` : (M, A, 3) half-space normals, as slopes in (a, b, c), beside a box and lines of sight;
     zero rows are idle; A <= 50. By default some are spread evenly.
     """
     gains = target_values(family, family.start[None] + family.information)
@@ -120,7 +111,7 @@ def _cut_out(
     n_free = len(family.information)
     by_target = family.information.transpose(1, 0, 2)
     factor = _whitening(family, light)
-    white = _directions(factor, further)
+    white = _directions(factor, further, family.team.params.polytopes)
     normals = white @ np.linalg.inv(factor)
     heights = normals @ by_target.transpose(0, 2, 1)  # (M, D, F)
     heights[np.broadcast_to(~light.T[:, None, :], heights.shape)] = np.inf
@@ -129,9 +120,9 @@ def _cut_out(
     counts = family.size - patterns.sum(axis=1)
     possible = np.flatnonzero((counts >= 0) & (counts <= n_free - heavy.shape[1]))
     support = sums[:, :, counts[possible]].transpose(0, 2, 1)  # (M, P, D)
-    widen = SAFETY * (1 + np.arange(normals.shape[1]) / normals.shape[1])
+    widen = family.team.params.polytopes.safety * (1 + np.arange(normals.shape[1]) / normals.shape[1])
     support = np.ascontiguousarray(support - widen * (1 + np.abs(support)))
-    points, facets, numbers = _cut_polytopes(white, support, factor)
+    points, facets, numbers = _cut_polytopes(white, support, factor, family.team.params.polytopes.capacity)
     base = patterns @ np.take_along_axis(by_target, heavy[..., None], axis=1)  # (M, P, 3)
     starts = family.start[:, None] + base[:, possible]
     values = _vertex_values(family, starts, points, numbers)
@@ -156,20 +147,24 @@ def _whitening(family: SetFamily, light: BoolArray) -> FloatArray:
     return np.asarray(np.linalg.cholesky(spread + 1e-8 * size[:, None, None] * np.eye(3)))
 
 
-def _directions(factor: FloatArray, further: FloatArray | None) -> FloatArray:
+def _directions(factor: FloatArray, further: FloatArray | None, params: PolytopeParams) -> FloatArray:
     """(M, D, 3) normals in whitened coordinates: a box, rank-one directions, further ones."""
     box = np.broadcast_to(np.concatenate([np.eye(3), -np.eye(3)]), (len(factor), 6, 3))
-    angle = (np.arange(RANK_ONE) + 0.5) * np.pi / RANK_ONE
+    angle = (np.arange(params.sight) + 0.5) * np.pi / params.sight
     rank_one = np.stack([np.cos(angle) ** 2, np.sin(2 * angle), np.sin(angle) ** 2], axis=-1) @ factor
-    given = np.broadcast_to(_sphere(), (len(factor), SPHERE, 3)) if further is None else further @ factor
+    given = (
+        np.broadcast_to(_sphere(params.sphere), (len(factor), params.sphere, 3))
+        if further is None
+        else further @ factor
+    )
     others = np.concatenate([rank_one, given], axis=1)
     others /= np.maximum(np.linalg.norm(others, axis=-1, keepdims=True), 1e-300)
     return np.concatenate([box, others], axis=1)
 
 
-def _sphere() -> FloatArray:
-    """(SPHERE, 3) unit vectors."""
-    index = np.arange(SPHERE) + 0.5
-    height, turn = 1 - 2 * index / SPHERE, np.pi * (1 + 5**0.5) * index
+def _sphere(points: int) -> FloatArray:
+    """(params.sphere, 3) unit vectors."""
+    index = np.arange(points) + 0.5
+    height, turn = 1 - 2 * index / points, np.pi * (1 + 5**0.5) * index
     flat = np.sqrt(1 - height**2)
     return np.stack([np.cos(turn) * flat, np.sin(turn) * flat, height], axis=-1)

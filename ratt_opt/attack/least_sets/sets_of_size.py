@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["BoundedSets", "SetFamily", "SetSearch"]
 
 FINISHED, FOUND = 0, 2
-AT_ONCE = 10_000_000
-"""Values of single targets between two updates of what is open; the clock is looked at more often, by the pace."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +156,7 @@ class BoundedSets:
         self._search = SetSearch(
             team, size, threshold, among=robots, inside=fixed, costs=costs, in_order=costs is not None
         )
-        self._pause = max(AT_ONCE // (team.record.targets * team.robots), 1)
+        self._pause = max(team.params.set_search.at_once // (team.record.targets * team.robots), 1)
 
     @property
     def nodes(self) -> int:

@@ -19,23 +19,10 @@ from ratt_opt.native.loops import ProgramRecord, loops
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.attack.params.least_sets import AscentParams
     from ratt_opt.budget import Budget
 
 __all__ = ["DualProgram", "Multipliers", "ProgramRecord"]
-
-COLD, WARM = (0.5, 0.3, 0.15, 0.1, 0.05, 0.03, 0.015), (0.05, 0.02)
-"""Temperatures, in the room left per target, from a first guess and from a related family's multipliers."""
-STEPS = 25
-"""L-BFGS steps at each temperature: time for a better bound. At 40 robots (trace, log-det) 12 steps took half the time
-for nearly as many nodes, and 50 almost twice the time."""
-MEMORY = 20
-"""Pairs that L-BFGS remembers: nearly all of its :data:`STEPS`, as a step costs far more than they do; with 8, 4 % more
-nodes for log-det at 40 robots."""
-SCREENED = 200.0
-"""Points this many temperatures above the least are left out until the next temperature: they only cost time. A quarter
-of it, and no limit, gave the same nodes at 40 robots."""
-FLAT = 1e-6
-"""Directions in which points spread by less, relative to all (squared), count as if they did by so much."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +54,7 @@ class DualProgram:
     heavy: IntArray
     information: FloatArray
     size: int
+    params: AscentParams
 
     def smoothed(
         self, multipliers: Multipliers, temperature: float, gradient: FloatArray, fraction: FloatArray
@@ -108,11 +96,11 @@ class DualProgram:
         bound = self.bound(start, rest)
         room = goal - bound
         factor = np.asarray(np.linalg.inv(self._spread()).transpose(0, 2, 1), dtype=np.float64)
-        for share in COLD if cold else WARM:
+        for share in self.params.cold if cold else self.params.warm:
             if bound >= goal or (budget is not None and budget.is_over):
                 break
             temperature = max(share * room / n_targets, 1e-12)
-            screened = self._screened(rest, SCREENED * temperature)
+            screened = self._screened(rest, self.params.screened * temperature)
             ascent = _Ascent(screened, factor, start, temperature, goal)
             start, reached = ascent.run(budget)
             rest = self.rest(start)
@@ -160,7 +148,7 @@ class DualProgram:
                 for t in range(3):
                     covariance[used, s, t] = np.add.reduceat(centred[:, s] * centred[:, t], starts) / counts
             size = np.trace(covariance[used], axis1=1, axis2=2) + 1e-12 * (mean**2).sum(axis=1) + 1e-300
-            covariance[used] += FLAT * size[:, None, None] * np.eye(3)
+            covariance[used] += self.params.flat * size[:, None, None] * np.eye(3)
         return np.asarray(np.linalg.cholesky(covariance))
 
 
@@ -184,7 +172,8 @@ class _Ascent:
             if self._bound >= self._goal or (budget is not None and budget.is_over):
                 raise StopIteration
 
-        options: Any = {"maxiter": STEPS, "maxcor": MEMORY}
+        params = self._program.params
+        options: Any = {"maxiter": params.steps, "maxcor": params.memory}
         minimize(self._negated, self._best, jac=True, method="L-BFGS-B", callback=stop, options=options)
         return self._multipliers(self._best), self._fraction
 

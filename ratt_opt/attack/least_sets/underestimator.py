@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.outer_polytopes import RANK_ONE, OuterPolytopes, outer_polytopes, target_values
+from ratt_opt.attack.least_sets.outer_polytopes import OuterPolytopes, outer_polytopes, target_values
 from ratt_opt.attack.least_sets.smoothed_dual import DualProgram, Multipliers
 from ratt_opt.native.library import address
 from ratt_opt.native.loops import loops
@@ -27,13 +27,6 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
 
 __all__ = ["Underestimator", "affine_underestimator"]
-
-KEPT, NEW = 24, 4
-"""Half-spaces per target that a node hands to its children: those that bind there, and new ones. More make a child's
-polytopes tighter and its vertices more. At 40 robots neither half nor double changes the nodes."""
-BINDING = 1e-2
-"""Vertices this close to the least of their target, relative to it, count as binding. It only ranks half-spaces for the
-children; at 40 robots a tenth of it changes no node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +107,9 @@ def _program(family: SetFamily, points: OuterPolytopes) -> DualProgram:
     np.put_along_axis(information.transpose(1, 0, 2), points.heavy[..., None], 0.0, axis=1)
     patterns, heavy = np.array(points.patterns, dtype=np.float64, order="C"), np.ascontiguousarray(points.heavy)
     vertices = points.first, points.pattern, points.values, points.light
-    return DualProgram(*vertices, patterns, heavy, np.ascontiguousarray(information), family.size)
+    return DualProgram(
+        *vertices, patterns, heavy, np.ascontiguousarray(information), family.size, family.team.params.ascent
+    )
 
 
 def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> FloatArray:
@@ -127,18 +122,18 @@ def _gradient(family: SetFamily, target: IntArray, matrices: FloatArray) -> Floa
 def _normals(
     family: SetFamily, points: OuterPolytopes, slopes: FloatArray, rest: FloatArray, constants: FloatArray
 ) -> FloatArray:
-    """(M, KEPT + NEW, 3) normals of the half-spaces that bind here, and of new ones.
+    """(M, kept + new, 3) normals of the half-spaces that bind here, and of new ones.
 
     ``constants`` : (M,) the least ``rest`` of each target
     """
-    counts = np.diff(points.first)
-    width = np.maximum(BINDING * np.abs(constants), 1e-300)
+    params, counts = family.team.params.underestimator, np.diff(points.first)
+    width = np.maximum(params.binding * np.abs(constants), 1e-300)
     closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(width, counts)
     weights = np.zeros((len(points.heavy), points.normals.shape[1]))
     near, rows = np.ascontiguousarray(closeness), np.ascontiguousarray(points.rows)
     loops.facet_weights(*weights.shape, address(points.first), address(near), address(rows), address(weights))
-    weights[:, 6 : 6 + RANK_ONE] = 0.0  # those are there anyway
-    order = np.argsort(-weights, axis=1, kind="stable")[:, :KEPT, None]
+    weights[:, 6 : 6 + family.team.params.polytopes.sight] = 0.0  # those are there anyway
+    order = np.argsort(-weights, axis=1, kind="stable")[:, : params.kept, None]
     kept = np.take_along_axis(points.normals, order, axis=1)
     kept *= np.take_along_axis(weights[..., None], order, axis=1) > 0
     return np.concatenate([kept, _new_normals(family, points, slopes, closeness)], axis=1)
@@ -149,14 +144,15 @@ def _new_normals(family: SetFamily, points: OuterPolytopes, slopes: FloatArray, 
 
     A normal in this direction cuts off points that are no sets.
     """
+    new = family.team.params.underestimator.new
     target = np.repeat(np.arange(len(points.heavy)), np.diff(points.first))
     close = np.flatnonzero(closeness > 0)
     order = close[np.lexsort((-closeness[close], target[close]))]
     target = target[order]
     starts = np.flatnonzero(np.diff(target, prepend=-1))
     rank = np.arange(len(order)) - np.repeat(starts, np.diff(np.append(starts, len(order))))
-    order, target, rank = order[rank < NEW], target[rank < NEW], rank[rank < NEW]
-    fresh = np.zeros((len(family.team.weights), NEW, 3))
+    order, target, rank = order[rank < new], target[rank < new], rank[rank < new]
+    fresh = np.zeros((len(family.team.weights), new, 3))
     matrices = family.start[target] + points.base[target, points.pattern[order]] + points.light[order]
     fresh[target, rank] = _gradient(family, target, matrices) - slopes[target]
     return fresh

@@ -21,13 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["WeakestAxis", "weakest_axis"]
 
-FIRST_INTERVALS = 16
-"""Arcs per target before bisection: enough that most close at once, few enough that easy targets cost little."""
-CLOSED = 1e-12
-"""Relative width at which an interval counts as decided."""
-LONGEST = 60
-"""Bisections; intervals left open then only loosen the bound."""
-
 
 @dataclass(frozen=True, slots=True)
 class WeakestAxis:
@@ -39,7 +32,7 @@ class WeakestAxis:
 
 def weakest_axis(family: SetFamily) -> WeakestAxis:
     """Bound the value of a family's sets, 0 <= size <= F, under a criterion that is decided by the worst axis."""
-    team, size = family.team, family.size
+    team, size, params = family.team, family.size, family.team.params.axis
     linear, offset = _harmonics(family.information), _harmonics(family.start)
 
     def smallest(target: IntArray, u: FloatArray) -> FloatArray:
@@ -48,17 +41,17 @@ def weakest_axis(family: SetFamily) -> WeakestAxis:
         return np.asarray(((offset[target] * u).sum(axis=1) + least) / team.weights[target])
 
     n_targets = len(team.weights)
-    target = np.repeat(np.arange(n_targets), FIRST_INTERVALS)
-    middle = np.tile((np.arange(FIRST_INTERVALS) + 0.5) * 2 * np.pi / FIRST_INTERVALS, n_targets)
-    half, best, where, decided = np.pi / FIRST_INTERVALS, np.inf, (0, 0.0), np.inf
-    for _ in range(LONGEST):
+    target = np.repeat(np.arange(n_targets), params.intervals)
+    middle = np.tile((np.arange(params.intervals) + 0.5) * 2 * np.pi / params.intervals, n_targets)
+    half, best, where, decided = np.pi / params.intervals, np.inf, (0, 0.0), np.inf
+    for _ in range(params.bisections):
         at_middle = smallest(target, _direction(middle, 1.0))
         k = int(at_middle.argmin())
         if at_middle[k] < best:
             best, where = float(at_middle[k]), (int(target[k]), float(middle[k]))
         ends = (-half, 1.0), (half, 1.0), (0.0, float(np.cos(half)))  # two on the circle, one outside: shift, cosine
         corners = np.stack([smallest(target, _direction(middle + s, c)) for s, c in ends]).min(axis=0)
-        is_open = corners < best * (1 - CLOSED)
+        is_open = corners < best * (1 - params.closed)
         decided = min(decided, float(corners[~is_open].min(initial=np.inf)))
         if not is_open.any():
             break
@@ -70,7 +63,7 @@ def weakest_axis(family: SetFamily) -> WeakestAxis:
     heights = linear[:, where[0]] @ _direction(np.array([where[1]]), 1.0)[0]
     chosen = np.argsort(heights, kind="stable")[:size]
     least = min(decided, best)  # of lambda_min / w; not positive where a corner left the cone
-    return WeakestAxis(team.record.before_all - 1 / (least * (1 - CLOSED)) if least > 0 else -np.inf, chosen)
+    return WeakestAxis(team.record.before_all - 1 / (least * (1 - params.closed)) if least > 0 else -np.inf, chosen)
 
 
 def _harmonics(matrices: FloatArray) -> FloatArray:

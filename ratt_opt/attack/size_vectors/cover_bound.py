@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.params.size_vectors import CoverParams
 from ratt_opt.attack.size_vectors.disjoint_sets import SetColumns
 from ratt_opt.budget import Stop
 from ratt_opt.highs import LinearProgram, rows_of
@@ -35,16 +36,9 @@ if TYPE_CHECKING:
 
 __all__ = ["CoverBound", "SetClasses", "cover_bound"]
 
-ROUNDS = 60
-ADDED, SEEDS = 40, 12
-"""Sets of each size that enter in one round, and of each robot at first: fewer rounds against larger programs."""
-ENOUGH = 1e-3
-"""Share of the room that is not worth another round."""
-SETS_OF_NODE = 100
-"""Sets that a round goes through in the time of a node."""
 MARGIN = 1e-9
 """Room, relative to the threshold, beyond what is proved: against rounding in the costs."""
-BOX = 4.0
+DEFAULT = CoverParams()
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +140,7 @@ class CoverBound:
         )
 
 
-def cover_bound(classes: SetClasses, threshold: float, budget: Budget) -> CoverBound:
+def cover_bound(classes: SetClasses, threshold: float, budget: Budget, params: CoverParams = DEFAULT) -> CoverBound:
     """Bound every family of the classes; none of the lists is empty.
 
     Parameters
@@ -157,11 +151,11 @@ def cover_bound(classes: SetClasses, threshold: float, budget: Budget) -> CoverB
     ------
     OutOfBudget : the time is up before any bound is known.
     """
-    program = _DualProgram(classes, max(abs(threshold), 1e-300))
+    program = _DualProgram(classes, max(abs(threshold), 1e-300), params)
     best = None
     n_sets = sum(len(low.masks) for low in classes.lists)
-    for _ in range(ROUNDS):
-        budget.spend(1 + n_sets // SETS_OF_NODE)
+    for _ in range(params.rounds):
+        budget.spend(1 + n_sets // params.sets_of_node)
         claim = program.solve()
         if claim is None:
             break
@@ -169,7 +163,7 @@ def cover_bound(classes: SetClasses, threshold: float, budget: Budget) -> CoverB
         bound = program.bound(potentials, weights)
         if best is None or bound > best.bound:
             best = CoverBound(classes, bound, potentials, weights, program.together())
-        if best.bound >= threshold or claimed - best.bound <= ENOUGH * max(threshold - best.bound, 0.0):
+        if best.bound >= threshold or claimed - best.bound <= params.enough * max(threshold - best.bound, 0.0):
             break
         if budget.stop() not in {None, Stop.NODES}:
             break
@@ -186,13 +180,16 @@ class _DualProgram:
     The box keeps both in bounds.
     """
 
-    def __init__(self, classes: SetClasses, scale: float) -> None:
+    def __init__(self, classes: SetClasses, scale: float, params: CoverParams) -> None:
+        self._params = params
         n, k = classes.n_robots, len(classes.lists)
         self.classes, self.scale = classes, scale
         number = np.array(classes.counts, dtype=np.float64)
         self._cost = np.concatenate([np.ones(n), number, np.zeros(k)])
-        lower = np.concatenate([-BOX * classes.free, np.full(k, -BOX * n), np.zeros(k)])
-        upper = np.concatenate([BOX * classes.free * (classes.rest == 0), np.full(k, BOX * n), np.ones(k)])
+        lower = np.concatenate([-params.box * classes.free, np.full(k, -params.box * n), np.zeros(k)])
+        upper = np.concatenate(
+            [params.box * classes.free * (classes.rest == 0), np.full(k, params.box * n), np.ones(k)]
+        )
         sizes = list(range(n + k, n + 2 * k)), number.tolist()
         self._program = LinearProgram(self._cost, lower, upper, rows=rows_of([sizes], [1.0], [1.0]), maximise=True)
         self._entered: dict[tuple[int, int], None] = {}
@@ -218,7 +215,7 @@ class _DualProgram:
         fresh: list[tuple[int, int]] = []
         for c, low in enumerate(classes.lists):
             reduced = weights[c] * low.values - _sums(low.masks, potentials)
-            few = min(ADDED, len(reduced))
+            few = min(self._params.added, len(reduced))
             fresh.extend((c, int(k)) for k in np.argpartition(reduced, few - 1)[:few])
             least.append(float(reduced.min()))
         self._enter(fresh)
@@ -256,9 +253,9 @@ class _DualProgram:
     def _seeds(self) -> Iterable[tuple[int, int]]:
         """The lowest sets of each size, and the lowest with each robot."""
         for c, low in enumerate(self.classes.lists):
-            yield from ((c, k) for k in range(min(SEEDS, len(low.masks))))
+            yield from ((c, k) for k in range(min(self._params.seeds, len(low.masks))))
             for i in range(self.classes.n_robots):
-                having = np.flatnonzero(low.masks >> np.uint64(i) & np.uint64(1))[: SEEDS // 4]
+                having = np.flatnonzero(low.masks >> np.uint64(i) & np.uint64(1))[: self._params.seeds // 4]
                 yield from ((c, int(k)) for k in having)
 
 

@@ -29,14 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Packer", "Packing", "SizeDecision"]
 
-PACKED = 2
-"""Groups of at least two robots, besides the largest, that are packed."""
-FEW, PACKING = 300, 3_000
-"""Sets of the size of the largest group around which the others are packed one by one, and nodes of one packing
-question, before all families are searched at once."""
-NODES_OF_SET, NODES_OF_PACKING = 300, 30
-"""Divisors of a threshold's nodes, for sets and for a packing question, in teams whose families are not searched."""
-
 
 @dataclass(slots=True)
 class _Sets:
@@ -83,9 +75,10 @@ class SizeDecision:
         return Answer(verdict=Threshold.OPEN)
 
     def _decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
-        lists, is_open, few, effort = SetLists(self._team, self._order), False, FEW, PACKING
+        params = self._team.params.packing
+        lists, is_open, few, effort = SetLists(self._team, self._order), False, params.few, params.effort
         if len(self._order) > MOST_ROBOTS:
-            few, effort = nodes // NODES_OF_SET, nodes // NODES_OF_PACKING
+            few, effort = nodes // params.nodes_of_set, nodes // params.nodes_of_packing
         for size in sorted({vector[0] for vector in self._vectors}):
             sets = self._few_sets(size, threshold, budget, few)
             if sets == []:
@@ -124,7 +117,7 @@ class SizeDecision:
         self, sets: list[frozenset[int]] | None, vector: Sizes, threshold: float, budget: Budget, effort: int
     ) -> tuple[tuple[frozenset[int], ...] | None, bool]:
         """Groups of a vector around one of its largest ones; whether there are none for sure if there are none."""
-        if sets is None or sum(size > 1 for size in vector[1:]) > PACKED:
+        if sets is None or sum(size > 1 for size in vector[1:]) > self._team.params.packing.packed:
             return None, False
         packer, everyone = Packer(self._team, self._must, budget), frozenset(range(len(self._order)))
         for largest in sets:

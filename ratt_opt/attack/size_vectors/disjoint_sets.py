@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.least_sets.sets_of_size import SetSearch
+from ratt_opt.attack.params.size_vectors import DisjointParams
 from ratt_opt.native.library import address, address_of, checked
 from ratt_opt.native.loops import ChoiceRecord, DisjointSetsRecord, loops
 
@@ -30,12 +31,7 @@ __all__ = ["MOST_ROBOTS", "DisjointSets", "Rest", "SetColumns", "SetFilter", "Se
 
 MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
-NODES_OF_A_LOOK = 10_000
-"""Partial sets until it is asked how many were listed; the clock is looked at more often, by the team's pace."""
-LONGEST = 200
-"""Times that this is asked before a list is given up: what is that long to list is longer to search."""
-MOST_SETS = 2_000_000
-"""Sets listed at most: 32 MiB, and about a second for each bound that goes through them."""
+DEFAULT = DisjointParams()
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,14 +79,14 @@ def list_sets(team: Team, order: IntArray, size: int, wanted: SetFilter, budget:
     OutOfBudget : the time is up, or too few nodes are left for the next look at the clock.
     """
     listing = _Listing(team, order, size, wanted)
-    for _ in range(LONGEST):
-        most = budget.nodes_left(NODES_OF_A_LOOK)
+    for _ in range(team.params.disjoint.looks):
+        most = budget.nodes_left(team.params.disjoint.nodes_of_look)
         before = listing.nodes
         finished = listing.go_on(most, budget)
         budget.nodes += listing.nodes - before
         if finished:
             return listing.found()
-        if listing.count > MOST_SETS:
+        if listing.count > team.params.disjoint.most_sets:
             return None
     return None
 
@@ -101,7 +97,7 @@ class _Listing:
     def __init__(self, team: Team, order: IntArray, size: int, wanted: SetFilter) -> None:
         costs = np.ascontiguousarray(wanted.costs, dtype=np.float64) if np.isfinite(wanted.room) else None
         self._search = SetSearch(team.among(order), size, wanted.threshold, costs=costs, limit=wanted.room)
-        self._size, self.count = size, 0
+        self._size, self.count, self._most = size, 0, team.params.disjoint.most_sets
         self._masks, self._values = np.zeros(4096, np.uint64), np.zeros(4096)
 
     @property
@@ -112,7 +108,7 @@ class _Listing:
     def go_on(self, nodes: int, budget: Budget) -> bool:
         """Continue the listing for at most ``nodes`` nodes; return whether every set is decided."""
         stop, pace = self._search.nodes + nodes, self._search.pace
-        while self._search.nodes < stop and self.count <= MOST_SETS and not budget.is_over:
+        while self._search.nodes < stop and self.count <= self._most and not budget.is_over:
             if self.count == len(self._masks):
                 self._masks = np.concatenate([self._masks, np.zeros_like(self._masks)])
                 self._values = np.concatenate([self._values, np.zeros_like(self._values)])
@@ -127,12 +123,6 @@ class _Listing:
         """The sets, lowest first."""
         ranked = np.argsort(self._values[: self.count], kind="stable")
         return SetList(self._size, self._masks[ranked], self._values[ranked])
-
-
-WORK, NODES = 4_000_000, 500
-"""Sets looked at between two looks at the clock, some hundredths of a second, and nodes that these count as."""
-MEMORY = 1 << 20
-"""States remembered; later ones replace earlier ones."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,11 +176,12 @@ class DisjointSets:
     threshold : only families of a smaller largest value count
     """
 
-    def __init__(self, columns: SetColumns, rest: Rest, threshold: float) -> None:
+    def __init__(self, columns: SetColumns, rest: Rest, threshold: float, params: DisjointParams = DEFAULT) -> None:
+        self._params = params
         robots, classes = len(rest.single), len(columns.counts)
         self._columns = columns
         self._kept = np.ascontiguousarray(columns.rest_costs), np.ascontiguousarray(rest.single)
-        self._memory, self._best = np.zeros((MEMORY, 2), np.uint64), np.zeros(robots + 1, np.int64)
+        self._memory, self._best = np.zeros((params.memory, 2), np.uint64), np.zeros(robots + 1, np.int64)
         self._counts = np.zeros((robots + 2, classes), np.int32)
         self._counts[0] = columns.counts
         self._stack = (ChoiceRecord * (robots + 2))()
@@ -213,7 +204,7 @@ class DisjointSets:
             must=rest.must,
             threshold=threshold,
             room=columns.room,
-            remembered=MEMORY,
+            remembered=params.memory,
             depth=0,
             found=0,
             memory=address(self._memory),
@@ -238,8 +229,8 @@ class DisjointSets:
         OutOfBudget : the time is up, or no node is left.
         """
         while looks > 0:
-            budget.spend(budget.nodes_left(NODES))
-            if loops.search_disjoint(self._record, WORK):
+            budget.spend(budget.nodes_left(self._params.work_nodes))
+            if loops.search_disjoint(self._record, self._params.work):
                 return True
             looks -= 1
         return False

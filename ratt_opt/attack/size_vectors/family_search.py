@@ -29,15 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["FamilySearch", "SetLists"]
 
-FEW_SETS = 1_000_000
-"""Sizes of at most that many sets are listed without asking first what a set may cost: the list serves every vector."""
-LOOKS = 10
-"""Looks at the clock that a search for disjoint sets may take before its node is divided: about a second."""
-FEW_CHOICES = 12
-"""Sets of one size that a node is divided by: once one is chosen, the bound is about the other sizes."""
-CLEAR = 0.02
-"""Two robots that a relaxed family has together this nearly never or always are not divided on."""
-
 
 class SetLists:
     """Lists of the sets of some robots below a threshold, size by size, made when first asked for.
@@ -59,7 +50,7 @@ class SetLists:
 
     def is_cheap(self, size: int) -> bool:
         """Tell whether a list is known, or sure to be short."""
-        return size in self._known or comb(len(self.order), size) <= FEW_SETS
+        return size in self._known or comb(len(self.order), size) <= self.team.params.families.few_sets
 
     def wanted(self, size: int, wanted: SetFilter, budget: Budget) -> SetList | None:
         """The sets that a filter lets through, of this call only."""
@@ -118,7 +109,7 @@ class FamilySearch:
         if self._list(budget):
             root = self._open[0]
             budget.spend()
-            found = cover_bound(root.classes, self.threshold, budget)
+            found = cover_bound(root.classes, self.threshold, budget, self.lists.team.params.family_bound)
             self._open = [replace(root, bound=max(root.bound, found.bound))]
             self._is_listed = found.bound < self.threshold
         if not self._is_listed and not self.is_open:
@@ -156,7 +147,7 @@ class FamilySearch:
         for k, (size, count) in enumerate(self._larger):
             threshold = self.threshold
             if k and not self.lists.is_cheap(size):
-                bound = cover_bound(classes, threshold, budget)
+                bound = cover_bound(classes, threshold, budget, self.lists.team.params.family_bound)
                 self._open = [replace(self._open[0], bound=bound.bound)]
                 if bound.bound >= threshold:
                     return False
@@ -183,15 +174,17 @@ class FamilySearch:
             if classes.is_empty:
                 break
             budget.spend()
-            bound = cover_bound(classes, self.threshold, budget)
+            bound = cover_bound(classes, self.threshold, budget, self.lists.team.params.family_bound)
             node = replace(node, classes=classes, bound=max(node.bound, bound.bound))
             self._open = [node if other.serial == node.serial else other for other in self._open]
             if node.bound >= self.threshold:
                 break
-            search = DisjointSets(bound.columns(self.threshold), self._rest, self.threshold)
+            search = DisjointSets(
+                bound.columns(self.threshold), self._rest, self.threshold, self.lists.team.params.disjoint
+            )
             children = self._divided(node, bound.together)
             try:
-                finished = search.run(budget, LOOKS if children else np.inf)
+                finished = search.run(budget, self.lists.team.params.families.looks if children else np.inf)
             finally:
                 if search.family():
                     self.threshold = max(search.value, node.level)
@@ -207,7 +200,7 @@ class FamilySearch:
         classes = node.classes
         c = min(range(len(classes.lists)), key=lambda d: len(classes.lists[d].masks))
         low, children = classes.lists[c], []
-        if len(low.masks) <= FEW_CHOICES and len(classes.lists) + classes.counts[c] > 2:
+        if len(low.masks) <= self.lists.team.params.families.few_choices and len(classes.lists) + classes.counts[c] > 2:
             for k in range(len(low.masks)):
                 later = replace(low, masks=low.masks[k:], values=low.values[k:])
                 lists = (*classes.lists[:c], later, *classes.lists[c + 1 :])
@@ -215,7 +208,7 @@ class FamilySearch:
                 left = replace(classes, lists=lists).having(c, mask)
                 children.append(self._child(node, left, (*node.chosen, mask), level))
             return children
-        pair = _pair(together)
+        pair = _pair(together, self.lists.team.params.families.clear)
         if pair is not None:
             first, second = (np.uint64(1) << np.uint64(bit) for bit in pair)
             for apart in (False, True):
@@ -248,8 +241,8 @@ def _agreeing(low: SetList, first: np.uint64, second: np.uint64, *, apart: bool)
     return low.where(~(one & other) if apart else one == other)
 
 
-def _pair(together: FloatArray) -> tuple[int, int] | None:
+def _pair(together: FloatArray, clear: float) -> tuple[int, int] | None:
     """The two robots that are together about half of the time; ``None`` if all are clear."""
     unclear = np.triu(np.minimum(together, 1 - together), 1)
     i, j = np.unravel_index(int(unclear.argmax()), unclear.shape)
-    return (int(i), int(j)) if unclear[i, j] > CLEAR else None
+    return (int(i), int(j)) if unclear[i, j] > clear else None

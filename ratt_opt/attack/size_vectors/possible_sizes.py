@@ -33,19 +33,8 @@ if TYPE_CHECKING:
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
-__all__ = ["LARGEST", "possible_sizes_bound", "unprotected_bound"]
+__all__ = ["possible_sizes_bound", "unprotected_bound"]
 
-MOST_POSSIBLE = 1_000
-"""Size vectors to search: 10 at dense graphs, hundreds at 50 robots of sparser ones."""
-
-LARGEST = 100
-"""Robots of which sizes are looked at: some twenty seconds without a limit."""
-
-MOST_SETS = 20_000
-"""Sets to ask about: a thousand take 2 to 7 seconds at 24 and 30 robots."""
-
-VECTORS_SHARE, MOST_NODES = 0.3, 3_000_000
-"""Share of the remaining budget for the bound by size vectors (the rest is for sets); nodes of each."""
 
 _SetValues = list[tuple[float, frozenset[int]]]
 
@@ -72,15 +61,15 @@ def possible_sizes_bound(task: AttackTask, team: Team, least: int) -> int:
     ------
     OutOfBudget : the time is up, or no node is left to begin with; the bracket keeps what was proved.
     """
-    threat, budget = task.problem.threat, task.budget
+    threat, budget, params = task.problem.threat, task.budget, team.params.possible_sizes
     possible = PossibleSizes(link_scores(threat.graph, threat.alpha_c, budget), threat.n_blinded, least)
-    vectors = possible.vectors(budget, MOST_POSSIBLE)
+    vectors = possible.vectors(budget, params.most_vectors)
     if vectors is None:
         return possible.forced
-    with budget.stage(VECTORS_SHARE, max_nodes=MOST_NODES) as part:
+    with budget.stage(params.share, max_nodes=params.nodes) as part:
         _vectors_bound(replace(task, budget=part), team, vectors)
     if not task.bracket.is_closed:
-        with budget.stage(1.0, max_nodes=MOST_NODES) as part:
+        with budget.stage(1.0, max_nodes=params.nodes) as part:
             _sets_bound(replace(task, budget=part), team, possible)
     return vectors[0][0]
 
@@ -114,7 +103,7 @@ def _sets_below(task: AttackTask, team: Team, possible: PossibleSizes) -> _SetVa
     lists, sets = SetLists(team, np.argsort(-team.single, kind="stable")), list[tuple[float, frozenset[int]]]()
     for size in range(possible.forced, possible.n_seeing + 1):
         low = lists.of(size, task.bracket.goal, task.budget)
-        if low is None or len(sets) + len(low.masks) > MOST_SETS:
+        if low is None or len(sets) + len(low.masks) > team.params.possible_sizes.most_sets:
             return None
         if not len(low.masks):
             break

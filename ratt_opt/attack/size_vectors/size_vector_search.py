@@ -35,33 +35,17 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from ratt_opt.attack.params.size_vectors import SizeVectorParams
     from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.attack.team import Team
     from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["SizeVectorSearch"]
+__all__ = ["SizeVectorSearch", "stages_of"]
 
 MOST_VECTORS = FIRST - 1
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
 If there are more, some make attacks, and the bound is that of the forced size."""
-
-OF_EACH_SIZE, SOME_VECTORS = 4, 200
-"""Vectors with each size of the largest group, and in all, that make attacks if there are too many."""
-
-FORCED_SHARE, FIRST_SHARE, ANNEALED_SHARE, PRICES_SHARE = 0.5, 0.2, 0.3, 0.5
-"""Shares of the remaining time: for the weakest set of the forced size; to test the attack in hand; for annealed
-attacks; for dual prices of robots and links."""
-
-FIRST_EFFORT, EFFORTS = 200_000, (100_000, 10**8)
-"""Nodes to test the attack in hand; of other thresholds, at first and at last. All attacks on 30 robots of the corpus
-close with the first, in 0.3 s."""
-
-STARTS, ALIKE, SMALL = 6, 0.8, 8
-"""Annealed attacks if several groups are about alike, which is if the second best is worth that share of the best. And
-groups of at most one robot in that many are small. Then dual prices come before vectors of sizes, if
-nobody is blinded: at 40 robots (0, 741), max-eigenvalue, they leave 2 % after 5 s instead of 33 %. With 14 of 60 robots
-blinded they prove nothing in that time."""
 
 
 class SizeVectorSearch:
@@ -81,13 +65,16 @@ class SizeVectorSearch:
         self.weak = WeakFamilies(task, team)
         self.families: list[GroupExchanges] = []
         self._is_about_families = False
+        sizes = team.params.size_vectors
         self._plan = plan = PricingProblem(team, Links.of(self.threat), self.threat)
         self._decision = SizeDecision(team, self.threat, self.vectors)
-        self._sizes = ThresholdSearch(task, plan, self._decision, EFFORTS, anneals=vectors is None)
+        self._sizes = ThresholdSearch(
+            task, plan, self._decision, (sizes.effort, sizes.last_effort), anneals=vectors is None
+        )
 
     def run(self) -> Stop:
         """Search every vector; the bracket is valid whenever this stops."""
-        return run_stages(STAGES, self) or self.task.budget.stop() or Stop.HEURISTIC
+        return run_stages(stages_of(self.team.params.size_vectors), self) or self.task.budget.stop() or Stop.HEURISTIC
 
     # -- what the stages ask -------------------------------------------------------------------------------------
 
@@ -114,7 +101,11 @@ class SizeVectorSearch:
     def has_small_groups(self) -> bool:
         """Several groups about alike, none need have more than an eighth of the team, nobody blinded, limit of time."""
         smallest = min(sizes[0] for sizes in self.vectors)
-        return self.is_about_families() and SMALL * smallest <= self.team.robots and not self.threat.n_blinded
+        return (
+            self.is_about_families()
+            and self.team.params.size_vectors.small * smallest <= self.team.robots
+            and not self.threat.n_blinded
+        )
 
     # -- the stages ----------------------------------------------------------------------------------------------
 
@@ -144,7 +135,9 @@ class SizeVectorSearch:
         """Test by size vectors whether any attack leaves less than the one in hand."""
         while not self.bracket.is_closed:
             try:
-                answer = self._decision.decide(self.bracket.goal, self.task.budget, FIRST_EFFORT)
+                answer = self._decision.decide(
+                    self.bracket.goal, self.task.budget, self.team.params.size_vectors.first_effort
+                )
             finally:
                 self.bracket.raise_lower(self._decision.least)
             if answer.verdict is Threshold.REFUTED:
@@ -170,13 +163,13 @@ class SizeVectorSearch:
     def anneal(self) -> None:
         """Annealed attacks, which change sizes and robots together."""
         self._sizes.task = self.task
-        self._sizes.anneal(STARTS)
+        self._sizes.anneal(self.team.params.size_vectors.starts)
 
     def anneal_on(self) -> None:
         """Annealed attacks as long as there is time."""
         self._sizes.task = self.task
         while True:
-            self._sizes.anneal(STARTS)
+            self._sizes.anneal(self.team.params.size_vectors.starts)
             if not np.isfinite(self.task.budget.seconds_left):
                 return
 
@@ -186,15 +179,17 @@ class SizeVectorSearch:
         if self._given is not None or budget.max_nodes is not None or not np.isfinite(budget.seconds_left):
             return False
         second, best = sorted([0.0, *map(self.team.value, weakest_of(families))])[-2:]
-        return second >= ALIKE * best
+        return second >= self.team.params.size_vectors.alike * best
 
     def _some_vectors(self) -> list[Sizes]:
         """A few vectors of each size of the largest group, the smallest sizes first."""
         n_robots, budgets = self.team.robots, (self.threat.n_blinded, self.threat.alpha_c)
         vectors: list[Sizes] = []
         for first in range(forced_group_size(n_robots, *budgets), n_robots - budgets[0] + 1):
-            vectors.extend(islice(sizes_of_largest(n_robots, *budgets, first), OF_EACH_SIZE))
-            if len(vectors) >= SOME_VECTORS:
+            vectors.extend(
+                islice(sizes_of_largest(n_robots, *budgets, first), self.team.params.size_vectors.of_each_size)
+            )
+            if len(vectors) >= self.team.params.size_vectors.some_vectors:
                 break
         return vectors
 
@@ -203,15 +198,21 @@ class SizeVectorSearch:
         return self.task.offer(Attack(*realise(self.threat, outcome)))
 
 
-STAGES: tuple[Stage[SizeVectorSearch], ...] = (
-    Stage("nobody left", SizeVectorSearch.blind_everyone, SizeVectorSearch.blinds_everyone),
-    Stage("exchanges of families", SizeVectorSearch.exchange),
-    Stage("forced size", SizeVectorSearch.weakest_of_forced_size, SizeVectorSearch.has_many_vectors, FORCED_SHARE),
-    Stage("annealed attacks", SizeVectorSearch.anneal_on, SizeVectorSearch.has_many_vectors),
-    Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_limited, FIRST_SHARE),
-    Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_unlimited),
-    Stage("annealed attacks", SizeVectorSearch.anneal, SizeVectorSearch.is_about_families, ANNEALED_SHARE),
-    Stage("dual prices", SizeVectorSearch.dual_prices, SizeVectorSearch.has_small_groups, PRICES_SHARE),
-    Stage("thresholds", SizeVectorSearch.thresholds),
-)
-"""Stages of an attack on a complete graph, by size vectors."""
+def stages_of(params: SizeVectorParams) -> tuple[Stage[SizeVectorSearch], ...]:
+    """Stages of an attack on a complete graph, by size vectors."""
+    return (
+        Stage("nobody left", SizeVectorSearch.blind_everyone, SizeVectorSearch.blinds_everyone),
+        Stage("exchanges of families", SizeVectorSearch.exchange),
+        Stage(
+            "forced size",
+            SizeVectorSearch.weakest_of_forced_size,
+            SizeVectorSearch.has_many_vectors,
+            params.forced_share,
+        ),
+        Stage("annealed attacks", SizeVectorSearch.anneal_on, SizeVectorSearch.has_many_vectors),
+        Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_limited, params.first_share),
+        Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_unlimited),
+        Stage("annealed attacks", SizeVectorSearch.anneal, SizeVectorSearch.is_about_families, params.annealed_share),
+        Stage("dual prices", SizeVectorSearch.dual_prices, SizeVectorSearch.has_small_groups, params.prices_share),
+        Stage("thresholds", SizeVectorSearch.thresholds),
+    )

@@ -23,22 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["GroupExchanges", "WeakFamilies", "weakest_of"]
 
-EXCHANGES_SHARE, SETTLED_SHARE, STRIDE = 0.2, 0.7, 20
-"""Shares of the time: for exchanges before the bounds, and of that, for families of all vectors before a few are
-perturbed. Large teams get fewer vectors, with that stride between the first ones."""
-
-SHAKEN, SHAKES = 6, 40
-"""Vectors whose best family is shaken and exchanged again, and how often: a few milliseconds each at 30 robots."""
-
-LARGE = 20_000_000
-"""Exchanges of the largest group times targets from which it starts where linear descent ends (a fifth of a second)."""
-
-WEAK_SETS = 3
-"""Weak sets of its size that a largest group is started from where it is clearly the best one."""
-
-CLEARLY = 0.5
-"""Size of the second group, over the largest, up to which that one is clearly the best."""
-
 
 class WeakFamilies:
     """Finds families that no exchange makes weaker."""
@@ -56,9 +40,10 @@ class WeakFamilies:
         OutOfBudget : the time is up before the first.
         """
         families: list[GroupExchanges] = []
-        part = self._budget.part(EXCHANGES_SHARE)
-        first = part.part(SETTLED_SHARE)
-        for sizes in _spread(vectors):
+        params = self._team.params.family_exchanges
+        part = self._budget.part(params.share)
+        first = part.part(params.settled_share)
+        for sizes in _spread(vectors, params.stride):
             if families and first.stop() is not None:
                 break
             self._budget.check()
@@ -69,15 +54,15 @@ class WeakFamilies:
                 family.around(largest, first)
             families.append(family)
         families.sort(key=attrgetter("value"))
-        for family in families[:SHAKEN]:
-            family.shake(SHAKES, part)
+        for family in families[: params.shaken]:
+            family.shake(params.shakes, part)
         return sorted(families, key=attrgetter("value"))
 
     def _settled(self, sizes: Sizes, budget: Budget) -> GroupExchanges:
         team = self._team
         family = GroupExchanges(team, sizes, self._must)
         largest, (n_robots, n_targets) = sizes[0], team.information.shape[:2]
-        if largest * (n_robots - largest) * n_targets > LARGE:
+        if largest * (n_robots - largest) * n_targets > self._team.params.family_exchanges.large:
             weakest = np.argsort(team.single, kind="stable")[:largest]
             family.around(frozenset(descended(team, weakest).tolist()), budget)
         if not np.isfinite(family.value):
@@ -86,16 +71,18 @@ class WeakFamilies:
 
     def _weak_largest(self, sizes: Sizes, budget: Budget) -> list[frozenset[int]]:
         """Weak sets of the size of a largest group that alone decides what a family is worth."""
-        if _second(sizes) > CLEARLY * (largest := sizes[0]):
+        if _second(sizes) > self._team.params.family_exchanges.clearly * (largest := sizes[0]):
             return []
         if largest not in self._weak:
-            self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[:WEAK_SETS]
+            self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[
+                : self._team.params.family_exchanges.weak_sets
+            ]
         return self._weak[largest]
 
 
-def _spread(vectors: list[Sizes]) -> list[Sizes]:
+def _spread(vectors: list[Sizes], stride: int) -> list[Sizes]:
     """All of them, those that are far apart first: there may be time for some only."""
-    return [sizes for first in range(STRIDE) for sizes in vectors[first::STRIDE]]
+    return [sizes for first in range(stride) for sizes in vectors[first::stride]]
 
 
 def weakest_of(families: list[GroupExchanges]) -> tuple[frozenset[int], ...]:
@@ -105,13 +92,6 @@ def weakest_of(families: list[GroupExchanges]) -> tuple[frozenset[int], ...]:
 
 def _second(sizes: Sizes) -> int:
     return sizes[1] if len(sizes) > 1 else 0
-
-
-STRENGTH = 3
-"""Random exchanges of one shake: one is often undone, many leave nothing of the family."""
-SEED = 0
-SHARE = 1e-3
-"""Weight of the two groups' sum beside the largest value."""
 
 
 class GroupExchanges:
@@ -125,7 +105,7 @@ class GroupExchanges:
 
     def __init__(self, team: Team, sizes: Sizes, must: BoolArray) -> None:
         self._team, self._must, self.sizes = team, must, sizes
-        self._rng = np.random.default_rng(SEED)
+        self._rng = np.random.default_rng(team.params.family_exchanges.seed)
         self._home: IntArray = np.zeros(team.robots, dtype=np.int64)
         """(N,) group of each robot, 0 for those that are blinded, 1.. for the sizes in order."""
         self.value = np.inf
@@ -165,7 +145,9 @@ class GroupExchanges:
             if budget.is_over:
                 return
             home = self._home.copy()
-            for one, other in self._rng.integers(0, len(home), (STRENGTH, 2)).tolist():
+            for one, other in self._rng.integers(
+                0, len(home), (self._team.params.family_exchanges.strength, 2)
+            ).tolist():
                 if (home[one] and home[other]) or not (self._must[one] or self._must[other]):
                     home[one], home[other] = home[other], home[one]
             self._improve(home, budget)
@@ -178,9 +160,10 @@ class GroupExchanges:
         team, sizes, must = self._team, len(self.sizes), np.ascontiguousarray(self._must, dtype=np.bool_)
         home, value, scan = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf), new_scan()
         places, finished = (address(home), address(must)), 0
+        share = team.params.family_exchanges.both
         while not finished:
             with team.pace.timed(pairs := team.pace.units):
-                finished = loops.exchange_groups(team.record, sizes, *places, SHARE, pairs, scan, byref(value))
+                finished = loops.exchange_groups(team.record, sizes, *places, share, pairs, scan, byref(value))
             if finished < 0:
                 raise MemoryError
             finished = finished or budget.is_over

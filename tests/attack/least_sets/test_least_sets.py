@@ -9,17 +9,18 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.least_sets import least_set_search as module
+from ratt_opt import AttackParams
 from ratt_opt.attack.least_sets.exchanges import descended, exchanged, weak_sets_of_size
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
+from ratt_opt.attack.params import SetSearchParams
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attackers.engine import NO_LISTS
 from tests.strategies import OBJECTIVES, information_data, range_bearing
-from tests.ways import go
+from tests.ways import with_params
 
 
 @pytest.mark.parametrize("name", OBJECTIVES)
@@ -82,10 +83,10 @@ def test_the_weakest_axis_is_the_weakest_set(seed):
     assert team.value(axis.chosen.tolist()) == pytest.approx(weakest, rel=1e-8, abs=1e-8)
 
 
-def searched_in_pieces(name, n_robots, nodes, growth):
+def searched_in_pieces(name, n_robots, nodes, growth, params):
     """The search for some twenty weak sets of five robots, in budgets each so many times the last; how many it took."""
     objective = OBJECTIVES[name](*range_bearing(np.random.default_rng(5), n_robots, 4, 1))
-    team = Team.of(objective, np.arange(n_robots))
+    team = Team.of(objective, np.arange(n_robots), params)
     values = {frozenset(one): team.value(one) for one in combinations(range(n_robots), 5)}
     threshold = float(np.mean(sorted(values.values())[20:22]))
     search, found, runs = LeastSetSearch(team, 5, threshold), set(), 0
@@ -101,19 +102,17 @@ def searched_in_pieces(name, n_robots, nodes, growth):
 
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])
-def test_a_search_of_weak_sets_goes_on_where_it_ended(name, monkeypatch):
-    go(monkeypatch, NO_LISTS)
-    _, runs = searched_in_pieces(name, 13, 2, 1.0)
+def test_a_search_of_weak_sets_goes_on_where_it_ended(name):
+    _, runs = searched_in_pieces(name, 13, 2, 1.0, with_params(AttackParams(), NO_LISTS))
     assert runs > 2
 
 
 @pytest.mark.parametrize("whole", [0, 10, 50, 10**9])
 @pytest.mark.parametrize("name", OBJECTIVES)
-def test_a_small_team_is_searched_whole_only_before_it_is_divided(name, whole, monkeypatch):
+def test_a_small_team_is_searched_whole_only_before_it_is_divided(name, whole):
     """Searched again after that, from one of its parts, sets of the others would be lost."""
-    for limit, value in {"WHOLE": ((10**9, whole),), "FEWEST": 1, "MOST": 1}.items():
-        monkeypatch.setattr(module, limit, value)
-    search, _ = searched_in_pieces(name, 12, 1.2, 1.2)
+    params = AttackParams(set_search=SetSearchParams(whole=((10**9, whole),), fewest=1, most=1))
+    search, _ = searched_in_pieces(name, 12, 1.2, 1.2, params)
     assert not list(search.run(Budget()))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.size_vectors import disjoint_sets, family_search, weak_families
+from ratt_opt import AttackParams
 from ratt_opt.budget import Budget
 from tests.attackers.engine import FAMILIES, NO_LISTS, PACKED, searched
 from tests.brackets import attained, attains, worst_value
@@ -44,10 +44,8 @@ def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
     if way in {"families", "divided"}:
         go(monkeypatch, FAMILIES)
     if way == "divided":
-        monkeypatch.setattr(family_search, "LOOKS", 0)
-        monkeypatch.setattr(family_search, "FEW_CHOICES", seed % 3)
-        monkeypatch.setattr(family_search, "FEW_SETS", 10)
-        monkeypatch.setattr(weak_families, "SHAKEN", 0)
+        choices = {"families.looks": 0, "families.few_choices": seed % 3, "families.few_sets": 10}
+        go(monkeypatch, {(AttackParams, name): n for name, n in {**choices, "family_exchanges.shaken": 0}.items()})
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
     expected = worst_value(problem, elements)
     bracket, _, stop = run_large(problem, elements)
@@ -79,7 +77,7 @@ def test_many_equal_groups_close(name, blinded):
 @pytest.mark.parametrize("limits", [(), (NO_LISTS,), (NO_LISTS, PACKED), (FAMILIES,)])
 def test_the_bracket_is_valid_at_every_node_count(name, seed, limits, monkeypatch):
     go(monkeypatch, *limits)
-    monkeypatch.setattr(disjoint_sets, "NODES_OF_A_LOOK", 3)
+    go(monkeypatch, {(AttackParams, "disjoint.nodes_of_look"): 3})
     problem, elements = team_problem(seed, 8, name)
     problem = ro.Problem(problem.objective, problem.robot, None, 2, 9)
     expected = worst_value(problem, elements)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt import AttackParams
 from ratt_opt.attack import team as team_module
+from ratt_opt.attack.params import FamilyExchangeParams
 from ratt_opt.attack.size_vectors import weak_families
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
@@ -23,17 +27,17 @@ def test_large_teams_start_from_where_linear_descent_ends(name, monkeypatch):
     for seed in range(4):
         problem = ro.random_scenario(40, 12, alpha_s=4, alpha_c=40, seed=seed).problem(name)
         values = PlanValues(problem, ro.ratt(problem).elements)
-        team = Team.of(problem.objective, values.plan)
         task = AttackTask(problem, values, AttackBracket(ro.Attack(), np.inf, 0.0), Budget(time_limit=0))
-        sizes = SizeVectorSearch(task, team).vectors[0]
         for large in found:
-            monkeypatch.setattr(weak_families, "LARGE", large)
+            params = AttackParams(family_exchanges=FamilyExchangeParams(large=large))
+            team = Team.of(problem.objective, values.plan, params)
+            sizes = SizeVectorSearch(task, team).vectors[0]
             found[large] += weak_families.WeakFamilies(task, team)._settled(sizes, task.budget).value
     assert found[0] < found[10**9]
 
 
 def test_exchanges_that_do_not_end_leave_time_for_bounds(monkeypatch):
-    monkeypatch.setattr(weak_families, "function", lambda *_: lambda *_: 0)
+    monkeypatch.setattr(weak_families, "loops", SimpleNamespace(exchange_groups=lambda *_: 0))
     problem = ro.random_scenario(40, 4, alpha_s=4, alpha_c=40, seed=1).problem("logdet")
     values = PlanValues(problem, ro.ratt(problem).elements)
     team = Team.of(problem.objective, values.plan)

@@ -1,0 +1,116 @@
+"""Parameters of exact attacks: one frozen class for each algorithm, together in :class:`AttackParams`.
+
+They decide how soon an attack is found and a bracket closes, never whether a bracket holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ratt_opt.attack.params.groups import (
+    AllSetsParams,
+    AnnealingParams,
+    BoundParams,
+    DualPriceParams,
+    ListedParams,
+    MasterParams,
+    PricingParams,
+    ThresholdParams,
+)
+from ratt_opt.attack.params.least_sets import (
+    AscentParams,
+    AxisParams,
+    LimitParams,
+    PolytopeParams,
+    SetExchangeParams,
+    SetSearchParams,
+    UnderestimatorParams,
+)
+from ratt_opt.attack.params.size_vectors import (
+    CoverParams,
+    DisjointParams,
+    FamilyExchangeParams,
+    FamilyParams,
+    PackingParams,
+    PossibleSizeParams,
+    SizeVectorParams,
+)
+from ratt_opt.attack.params.stages import (
+    BranchingParams,
+    CriterionParams,
+    EveryAttackParams,
+    StageParams,
+    ValueAnnealingParams,
+)
+
+__all__ = [
+    "DEFAULT",
+    "AllSetsParams",
+    "AnnealingParams",
+    "AscentParams",
+    "AttackParams",
+    "AxisParams",
+    "BoundParams",
+    "BranchingParams",
+    "CoverParams",
+    "CriterionParams",
+    "DisjointParams",
+    "DualPriceParams",
+    "EveryAttackParams",
+    "FamilyExchangeParams",
+    "FamilyParams",
+    "LimitParams",
+    "ListedParams",
+    "MasterParams",
+    "PackingParams",
+    "PolytopeParams",
+    "PossibleSizeParams",
+    "PricingParams",
+    "SetExchangeParams",
+    "SetSearchParams",
+    "SizeVectorParams",
+    "StageParams",
+    "ThresholdParams",
+    "UnderestimatorParams",
+    "ValueAnnealingParams",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttackParams:
+    """Parameters of one exact attack, algorithm by algorithm; ``replace`` changes some.
+
+    ``worst_case_attack(..., params=params)`` uses them, and ``ratt-opt attack --params FILE`` reads them from TOML.
+    """
+
+    stages: StageParams = field(default_factory=StageParams)
+    criterion: CriterionParams = field(default_factory=CriterionParams)
+    every_attack: EveryAttackParams = field(default_factory=EveryAttackParams)
+    value_annealing: ValueAnnealingParams = field(default_factory=ValueAnnealingParams)
+    branching: BranchingParams = field(default_factory=BranchingParams)
+    all_sets: AllSetsParams = field(default_factory=AllSetsParams)
+    annealing: AnnealingParams = field(default_factory=AnnealingParams)
+    bounds: BoundParams = field(default_factory=BoundParams)
+    threshold: ThresholdParams = field(default_factory=ThresholdParams)
+    pricing: PricingParams = field(default_factory=PricingParams)
+    dual_prices: DualPriceParams = field(default_factory=DualPriceParams)
+    master: MasterParams = field(default_factory=MasterParams)
+    listed: ListedParams = field(default_factory=ListedParams)
+    set_exchanges: SetExchangeParams = field(default_factory=SetExchangeParams)
+    limits: LimitParams = field(default_factory=LimitParams)
+    polytopes: PolytopeParams = field(default_factory=PolytopeParams)
+    set_search: SetSearchParams = field(default_factory=SetSearchParams)
+    ascent: AscentParams = field(default_factory=AscentParams)
+    underestimator: UnderestimatorParams = field(default_factory=UnderestimatorParams)
+    axis: AxisParams = field(default_factory=AxisParams)
+    size_vectors: SizeVectorParams = field(default_factory=SizeVectorParams)
+    family_exchanges: FamilyExchangeParams = field(default_factory=FamilyExchangeParams)
+    packing: PackingParams = field(default_factory=PackingParams)
+    disjoint: DisjointParams = field(default_factory=DisjointParams)
+    families: FamilyParams = field(default_factory=FamilyParams)
+    family_bound: CoverParams = field(default_factory=CoverParams)
+    possible_sizes: PossibleSizeParams = field(default_factory=PossibleSizeParams)
+
+
+DEFAULT = AttackParams()
+"""Parameters of attacks that are not given any."""

@@ -1,0 +1,85 @@
+"""Parameters from TOML files: a table for each algorithm, a line for each parameter that is not as by default."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import fields, is_dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from ratt_opt.attack.params import DEFAULT
+from ratt_opt.errors import InputError
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    from ratt_opt.attack.params import AttackParams
+
+__all__ = ["changed", "read_attack_params"]
+
+P = TypeVar("P", bound="DataclassInstance")
+
+
+def read_attack_params(path: str | Path | None) -> AttackParams:
+    """Read the parameters of exact attacks that a file changes; all are as by default without a file.
+
+    Raises
+    ------
+    InputError : the file cannot be read or is no TOML, a parameter does not exist, or a value is none of its kind.
+    """
+    if path is None:
+        return DEFAULT
+    try:
+        document = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError("params", f"must be a file of TOML ({error})", str(path)) from None
+    return _with(DEFAULT, document, "params")
+
+
+def changed(params: DataclassInstance) -> dict[str, Any]:
+    """Return the parameters that are not as by default, by their places: ``"annealing.moves"``."""
+    places: dict[str, Any] = {}
+    for one in fields(params):
+        value, usual = getattr(params, one.name), getattr(type(params)(), one.name)
+        if is_dataclass(value) and not isinstance(value, type):
+            places |= {f"{one.name}.{name}": inner for name, inner in changed(value).items()}
+        elif value != usual:
+            places[one.name] = value
+    return places
+
+
+def _with(default: P, document: dict[str, Any], place: str) -> P:
+    names = [one.name for one in fields(default)]
+    for name in document:
+        if name not in names:
+            raise InputError(place, f"must name some of {', '.join(names)}", name)
+    return replace(
+        default, **{name: _value(getattr(default, name), given, f"{place}.{name}") for name, given in document.items()}
+    )
+
+
+def _value(default: Any, given: Any, place: str) -> Any:
+    if is_dataclass(default) and not isinstance(default, type):
+        if not isinstance(given, dict):
+            raise InputError(place, "must be a table", given)
+        return _with(default, given, place)
+    try:
+        value = TypeAdapter(_kind(default)).validate_python(given)
+    except ValidationError as error:
+        raise InputError(place, f"must be like {default!r} ({error.errors()[0]['msg']})", given) from None
+    if not _is_sound(value):
+        raise InputError(place, "must be at least 0 and finite", given)
+    return value
+
+
+def _kind(default: Any) -> Any:
+    if not isinstance(default, tuple):
+        return type(default)
+    first = default[0]
+    return tuple[tuple[int, int], ...] if isinstance(first, tuple) else tuple[type(first), ...]  # type: ignore[misc]
+
+
+def _is_sound(value: Any) -> bool:
+    return all(map(_is_sound, value)) if isinstance(value, tuple) else 0 <= value < float("inf")

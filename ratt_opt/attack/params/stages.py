@@ -1,0 +1,108 @@
+"""Parameters of the schedules: when stages apply, and their shares of the remaining budget."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = [
+    "BranchingParams",
+    "CriterionParams",
+    "EveryAttackParams",
+    "StageParams",
+    "ValueAnnealingParams",
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StageParams:
+    """Shares of the remaining budget, and most nodes, of the stages of one attack.
+
+    ``every_attack`` : for all attacks. ``spatial`` : size vectors if targets are not in the plane
+    ``greedy`` : greedy steps. ``listed_soon``, ``listed``, ``listed_nodes`` : listed columns before and after annealing
+    ``first_bound``, ``first_bound_nodes`` : forced size on dense graphs, at first; ``bound``, ``bound_nodes`` : later
+    ``sizes`` : groups of possible sizes. ``annealed_values`` : annealing by values alone
+    ``renewed`` : multiple of the earlier attack's seconds from which a resumed one runs its first stages again
+    """
+
+    every_attack: float = 0.4
+    spatial: float = 0.6
+    greedy: float = 0.05
+    listed_soon: float = 0.4
+    listed: float = 0.5
+    listed_nodes: int = 20_000_000
+    first_bound: float = 0.05
+    first_bound_nodes: int = 20_000
+    bound: float = 0.3
+    bound_nodes: int = 500_000
+    sizes: float = 0.7
+    annealed_values: float = 0.5
+    renewed: float = 4.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CriterionParams:
+    """When the stages of an attack on a criterion apply.
+
+    ``dense`` : share of all links from which sizes say more than dual prices
+    ``small`` : robots for which all sets are looked at before anything else
+    ``starts`` : annealed attacks before the first threshold, for at most ``starts_for`` robots; the square beyond
+    ``inner_starts`` : inside another search; ``inner_nodes`` : of dual prices there, without limits
+    """
+
+    dense: float = 0.5
+    small: int = 12
+    starts: int = 18
+    starts_for: int = 24
+    inner_starts: int = 3
+    inner_nodes: int = 500_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EveryAttackParams:
+    """When all attacks are tried.
+
+    ``share`` : of the time left that it is expected to take at most; a larger one closes more attacks by it, and
+    leaves less time for other stages if it is misjudged
+    ``seconds`` : expected at most without a limit. ``batch`` : blinded sets valued at once, megabytes of matrices
+    """
+
+    share: float = 0.25
+    seconds: float = 5.0
+    batch: int = 2048
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ValueAnnealingParams:
+    """Annealing of set functions that are known by their values.
+
+    ``moves`` : per robot of the first starts, twice as many after two in vain. ``in_vain`` : starts until it is enough
+    ``hot``, ``warm``, ``cold`` : temperatures relative to the team's value: first, first from the attack in hand, last
+    ``alone``, ``blinds``, ``together`` : probability that a move opens a group, exchanges blinded robots, takes
+    neighbours along; ``half`` : of each neighbour then
+    ``price`` : of a link beyond the budget, relative to the team's value
+    ``remembered`` : values of groups kept from start to start
+    """
+
+    moves: int = 200
+    in_vain: int = 8
+    hot: float = 0.05
+    warm: float = 0.01
+    cold: float = 5e-4
+    alone: float = 0.15
+    blinds: float = 0.5
+    together: float = 0.2
+    half: float = 0.5
+    price: float = 0.02
+    remembered: int = 200_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BranchingParams:
+    """Branch and bound over attacks.
+
+    ``most_open`` : nodes kept by their bounds, some hundred megabytes; beyond, the search goes in depth
+    ``at_once`` : sets of blinded robots whose groups are valued in one batch
+    """
+
+    most_open: int = 200_000
+    at_once: int = 1_000
