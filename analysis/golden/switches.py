@@ -13,12 +13,12 @@ from ratt_opt.attack.params import PackingParams, SetSearchParams
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin import division, levels
-from ratt_opt.solvers.maxmin.adversary import LastingAttacks
-from ratt_opt.solvers.maxmin.covers.search import CoverSearch
+from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
+from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
-from ratt_opt.solvers.maxmin.upper_ends import RestartedSearch
+from ratt_opt.solvers.maxmin.upper_bound_portfolio import RestartedSearch
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
-    "lasting attacks": ((LastingAttacks, "of", lambda _problem, attack: attack),),
+    "lasting attacks": ((PlanIndependentAttacks, "of", lambda _problem, attack: attack),),
     "dividing by what cuts lose": ((division, "FLAT", float("inf")),),
     "levels above the best plan": ((levels, "SHARES", (0.0,)),),
     "further trees": ((RestartedSearch, "_is_given_up", _gives(False)),),

@@ -254,7 +254,7 @@ def _best(  # noqa: PLR0917
         proved = ProvedPlan(incumbent.adversary, starts[-1])
         for plan in starts:
             with suppress(OutOfBudget):  # it knows what the attacks so far proved
-                proved.glance(plan, incumbent.budget)
+                proved.evaluate_quickly(plan, incumbent.budget)
     unattacked = few.team_value(proved.elements, Attack())
     upper = min(unattacked, pool.plan_value(proved.elements))
     if proved.worst_case is not None:

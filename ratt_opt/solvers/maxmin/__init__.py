@@ -1,15 +1,16 @@
 """The exact max-min search: the plan of largest worst-case value, and a proof that none is better.
 
-Open ``solve.py`` first. ``upper_ends.py`` lets the searches for the upper end take turns (``turns.py``).
+Open ``solve.py`` first. ``upper_bound_portfolio.py`` runs the searches for the upper bound in turn, by time slices
+(``time_slices.py``).
 
-- Concave relaxations, tree after tree: ``search.py`` is the loop over the nodes of one. ``frontier.py`` holds the nodes
-  and the closing rule, ``relaxation.py`` the linear program, ``cut_store.py`` its cuts, ``winners.py`` which group of
-  an outcome counts, ``small_groups.py`` what small ones can reach, ``division.py`` what a node is divided by, by
-  ``mixtures.py``. ``known.py`` is what all trees share.
+- Concave relaxations, tree after tree: ``branch_and_bound.py`` is the loop over the nodes of one tree. ``frontier.py``
+  holds the nodes and the closing rule, ``relaxation.py`` the linear program, ``cut_store.py`` its cuts. ``winners.py``
+  decides which group of an outcome counts, ``small_groups.py`` tabulates small groups. ``division.py`` divides a node,
+  by ``mixtures.py``. ``known.py`` is the state that all trees share.
 - Searches in depth, if robots see few targets: ``levels.py``, by ``covers/`` or by marginal gains
   (``marginal_search.py``, ``marginal_tables.py``).
 
-The lower end: ``outcome_pool.py`` keeps what attacks leave, ``candidates.py`` ranks and improves plans by that,
-``walk.py`` goes on from them, ``adversary.py`` attacks them, ``incumbent.py`` has the best one proved. ``elements.py``
-is what plans choose from; the tree of ``proof.py`` grows and becomes a proof.
+The lower bound: ``outcome_pool.py`` keeps the outcomes of attacks, ``candidates.py`` ranks and improves plans by them,
+``walk.py`` continues from there, ``adversary.py`` attacks plans, ``incumbent.py`` has the best proved one.
+``elements.py`` holds the elements that plans choose from; the tree of ``proof.py`` grows and becomes a proof.
 """

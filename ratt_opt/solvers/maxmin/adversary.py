@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 
-__all__ = ["Adversary", "LastingAttacks"]
+__all__ = ["Adversary", "PlanIndependentAttacks"]
 
 
-class LastingAttacks:
+class PlanIndependentAttacks:
     """Exchanges the smaller groups of attacks on one problem for some that stay weak under other plans too.
 
     If all robots are alike to the adversary, an attack may leave any of the robots outside its largest group in the
@@ -137,7 +137,7 @@ class Adversary:
 
     def __init__(self, problem: Problem, pool: OutcomePool, budget: Budget) -> None:
         self.problem, self.pool, self.budget = problem, pool, budget
-        self._lasting = LastingAttacks(problem, budget)
+        self._lasting = PlanIndependentAttacks(problem, budget)
         on_network = problem.n_robots > SEARCHED_BY_SIZE and not problem.threat.links_alike
         self.on_network = on_network
         self._annealed = AnnealedAttacks.of(problem, budget) if on_network else None
@@ -226,7 +226,7 @@ class Adversary:
         self._remember(self.problem, plan, result.attack)
         return result
 
-    def glance(self, plan: IntArray, budget: Budget) -> AttackResult:
+    def evaluate_quickly(self, plan: IntArray, budget: Budget) -> AttackResult:
         """Evaluate a plan quickly: by the known attack that hurts it most, or earlier exact ones.
 
         An attack of its own takes half a second if a thousand robots lose hundreds of thousands of links.
@@ -247,7 +247,7 @@ class Adversary:
             del self._memories[next(iter(self._memories))]
         return memory
 
-    def heed(self, result: AttackResult) -> None:
+    def raise_if_interrupted(self, result: AttackResult) -> None:
         """Stop the search if the user interrupted an attack, once what the attack proved is kept."""
         if result.stop is Stop.INTERRUPTED:
             raise OutOfBudget(self.budget.interrupt())
@@ -268,5 +268,5 @@ class Adversary:
         if not problem.threat.links_alike:
             return greedy_attack(problem, plan, budget=self.budget).attack
         found = worst_case_attack_unrounded(problem, plan, max_nodes=0, budget=self.budget.part(QUICK_SHARE))
-        self.heed(found)
+        self.raise_if_interrupted(found)
         return found.attack

@@ -52,18 +52,18 @@ class ProvedPlan:
         self._keep(plan, result)
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             self.unproved_stop = result.stop
-        self.adversary.heed(result)
+        self.adversary.raise_if_interrupted(result)
 
-    def glance(self, plan: IntArray, budget: Budget) -> None:
+    def evaluate_quickly(self, plan: IntArray, budget: Budget) -> None:
         """Keep a plan if more is known of it at once than is proved of the one kept.
 
         The attack that comes with it teaches nothing: of the outcomes a search begins with, these are not the worst.
 
         Raises ``OutOfBudget`` : the user interrupted it; what was known counts.
         """
-        result = self.adversary.glance(plan, budget)
+        result = self.adversary.evaluate_quickly(plan, budget)
         self._keep(plan, result)
-        self.adversary.heed(result)
+        self.adversary.raise_if_interrupted(result)
 
     def _keep(self, plan: IntArray, result: AttackResult) -> None:
         self.evaluations += result.evaluations
@@ -122,7 +122,7 @@ class Incumbent:
         """
         self.proved.attack(plans[0], self._first_part())
         for plan in plans[1:]:
-            self.proved.glance(plan, self.budget)
+            self.proved.evaluate_quickly(plan, self.budget)
         if self.budget.is_over:
             return
         for plan in plans:

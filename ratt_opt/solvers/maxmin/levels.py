@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.known import Known, Progress
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 
 __all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
 
@@ -70,25 +70,25 @@ class LevelSearch(ABC):
     def is_long(self) -> bool:
         """True if the record is as long as memory should hold."""
 
-    def run(self, turns: Turns, runs: int) -> Ending:
+    def run(self, slices: TimeSlices, runs: int) -> Ending:
         """Search until nothing is open, the runs are spent, or it is time to stop."""
         until = self.runs + runs
         while self.runs < until:
-            if turns.budget.stop() is not None or turns.stop() is not None:
+            if slices.budget.stop() is not None or slices.stop() is not None:
                 return Ending.STOPPED
             if self.is_long:
                 return Ending.LIMIT
             if self.runs == 0:
-                self._begin(turns)
+                self._begin(slices)
             outcome = self._search_on()
             if outcome is Outcome.PROVED:
                 return Ending.PROVED
             if outcome is Outcome.PLAN and not self._meet(self._plan()):
                 return Ending.STOPPED
             if outcome is Outcome.SPENT:
-                turns.budget.nodes += 1
+                slices.budget.nodes += 1
                 self.runs += 1
-                self._learn(turns)
+                self._learn(slices)
         return Ending.LIMIT
 
     @abstractmethod
@@ -99,13 +99,13 @@ class LevelSearch(ABC):
     def _plan(self) -> IntArray:
         """(N,) the plan that is left, of the undominated elements."""
 
-    def _begin(self, turns: Turns) -> None:  # noqa: B027  (a search may have nothing to do then; so may those below)
+    def _begin(self, slices: TimeSlices) -> None:  # noqa: B027  (a search may have nothing to do then; so may those below)
         """Prepare the first run."""
 
-    def _learn(self, turns: Turns) -> None:  # noqa: B027
+    def _learn(self, slices: TimeSlices) -> None:  # noqa: B027
         """Learn from a run whose nodes were spent."""
 
-    def _heed(self, plan: IntArray, outcome: int) -> None:  # noqa: B027
+    def _use_attack(self, plan: IntArray, outcome: int) -> None:  # noqa: B027
         """Take note that a known outcome leaves a plan no more than the level."""
 
     def _meet(self, plan: IntArray) -> bool:
@@ -115,7 +115,7 @@ class LevelSearch(ABC):
             self._incumbent.offer(whole)
         values = pool.outcome_values(pool.group_values(pool.objective.information[whole]))
         if len(values) and values.min() <= self.level:
-            self._heed(plan, int(values.argmin()))
+            self._use_attack(plan, int(values.argmin()))
             return True
         raised = self._level_now()
         if raised <= self.level:
@@ -146,25 +146,25 @@ class SearchByLevels(ABC):
     def _keep(self, search: LevelSearch) -> None:
         """Take what a search proved."""
 
-    def run(self, turns: Turns, progress: Progress, upper: float, most_nodes: int) -> Stop:
+    def run(self, slices: TimeSlices, progress: Progress, upper: float, most_nodes: int) -> Stop:
         """Search on until nothing is left, these nodes are spent or it is time to stop.
 
         ``upper`` : what is proved otherwise
         """
-        budget = turns.budget
+        budget = slices.budget
         until = budget.nodes + most_nodes
         self.upper, told = min(self.upper, upper), budget.nodes
         while True:
             if self.upper <= self._known.rule.better or self._known.rule.closes(self.upper):
                 return Stop.GAP
-            if (stop := budget.stop() or turns.stop()) is not None:
+            if (stop := budget.stop() or slices.stop()) is not None:
                 return stop
             if budget.nodes >= until or self._level() >= self._in_vain:
                 return Stop.NODES
             self._make_room()
             search = self._search()
             before = search.runs
-            ending = search.run(turns, self._left)
+            ending = search.run(slices, self._left)
             self._left -= search.runs - before
             if ending is Ending.LIMIT and self._share == 0:
                 self._walk.run(budget.part(WALK_SHARE), WALK_KICKS)

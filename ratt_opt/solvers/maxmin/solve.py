@@ -23,8 +23,8 @@ from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
 from ratt_opt.solvers.maxmin.known import Known
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.turns import Turns
-from ratt_opt.solvers.maxmin.upper_ends import UpperEnds, monotone_bound
+from ratt_opt.solvers.maxmin.time_slices import TimeSlices
+from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio, monotone_bound
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 
@@ -40,7 +40,7 @@ __all__ = [
     "nonrobust_optimum",
     "nonrobust_search",
     "proved_by_tangents",
-    "search_in_all_coordinates",
+    "solve_in_coordinates",
     "solve_maxmin",
 ]
 
@@ -96,11 +96,11 @@ def solve_maxmin(
         return solve_by_values(problem, budget, gap, alpha_cs)
     searched = with_unit_prior(measured_coordinates(problem))
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
-    found = search_in_all_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)
+    found = solve_in_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)
     return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
-def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
+def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     problem: Problem,
     budget: Budget,
     gap: float = 1e-9,
@@ -121,14 +121,14 @@ def search_in_all_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget)
-    search: UpperEnds | None = None
+    search: UpperBoundPortfolio | None = None
     try:
         pool.list_all()
         incumbent.start(_first_plans(problem, first, earlier, budget))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
         known = Known.of(Task.of(problem), incumbent, max(gap - PROVED, 0.0), by_rows=by_rows)
-        search = UpperEnds(known, in_depth=in_depth)
-        stop = _search_and_prove(search, Turns(budget, incumbent), progress)
+        search = UpperBoundPortfolio(known, in_depth=in_depth)
+        stop = _search_and_prove(search, TimeSlices(budget, incumbent), progress)
         if incumbent.is_proved and not budget.is_over:
             break_ties(incumbent, budget)
     except OutOfBudget as out:
@@ -165,9 +165,7 @@ def proved_by_tangents(
     part = budget.part(params.share, max_nodes=max(params.nodes, params.times * result.nodes))
     searched = with_unit_prior(measured_coordinates(problem))
     gap = max((result.upper - result.lower) / abs(result.upper), ROUNDING) if result.upper else ROUNDING
-    found = search_in_all_coordinates(searched, part, gap, start=result.elements, by_rows=False).widen_by_rounding(
-        searched
-    )
+    found = solve_in_coordinates(searched, part, gap, start=result.elements, by_rows=False).widen_by_rounding(searched)
     lifted = searched.lifted(found)
     return replace(result, upper=max(lifted.upper, result.lower), proof=lifted.proof)
 
@@ -194,17 +192,19 @@ def _first_plans(problem: Problem, first: IntArray, earlier: IntArray | None, bu
     return [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
 
 
-def _search_and_prove(search: UpperEnds, turns: Turns, progress: Progress) -> Stop:
+def _search_and_prove(search: UpperBoundPortfolio, slices: TimeSlices, progress: Progress) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
     while True:
         if progress is not None:
-            progress(turns.budget.nodes, turns.incumbent.proved.lower, search.upper)
-        stop = search.run(turns, progress)
-        if not turns.prove():
+            progress(slices.budget.nodes, slices.incumbent.proved.lower, search.upper)
+        stop = search.run(slices, progress)
+        if not slices.prove():
             return stop
 
 
-def _result(problem: Problem, incumbent: Incumbent, search: UpperEnds | None, stop: Stop, gap: float) -> MaxMinResult:
+def _result(
+    problem: Problem, incumbent: Incumbent, search: UpperBoundPortfolio | None, stop: Stop, gap: float
+) -> MaxMinResult:
     proved = incumbent.proved
     lower = proved.lower
     if search is not None and np.isfinite(search.upper):

@@ -59,14 +59,14 @@ def close_group(
 
     Of hundreds of robots and targets a proof takes seconds, so the budget is asked at each of its nodes.
     """
-    search = _Search(task, members, rule, budget)
+    search = _ClosingSearch(task, members, rule, budget)
     try:
         return search.close(choices)
     except _RefutedError:
         return None
 
 
-class _Search:
+class _ClosingSearch:
     def __init__(self, task: Task, members: tuple[int, ...], rule: ClosingRule, budget: Budget) -> None:
         self.problem, self.objective = task.problem, task.objective
         self.members, self.rule, self.budget = members, rule, budget

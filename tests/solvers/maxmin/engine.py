@@ -17,10 +17,9 @@ from ratt_opt.solvers.maxmin import (
     outcome_pool,
     small_groups,
     solve,
-    upper_ends,
+    upper_bound_portfolio,
 )
-from ratt_opt.solvers.maxmin.covers import dive
-from ratt_opt.solvers.maxmin.covers import search as cover_search
+from ratt_opt.solvers.maxmin.covers import cover_search, dive
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
 
 if TYPE_CHECKING:
@@ -63,13 +62,13 @@ BLIND: Way = EXCHANGED | {(adversary.Adversary, "_quick_attack"): lambda *_: Att
 """Quick attacks see nothing: only exact ones tell good plans from bad."""
 NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0}
 """Nothing is known of small groups beforehand."""
-TREES_SOON: Way = {(upper_ends, "FIRST_NODES"): 1, (upper_ends, "NEARLY"): 0.0}
+TREES_SOON: Way = {(upper_bound_portfolio, "FIRST_NODES"): 1, (upper_bound_portfolio, "NEARLY"): 0.0}
 """Further trees come soon, as where searches of large teams are long."""
-SMALL_TREES: Way = TREES_SOON | {(upper_ends, "TREE_NODES"): 2}
+SMALL_TREES: Way = TREES_SOON | {(upper_bound_portfolio, "TREE_NODES"): 2}
 
 _HOWEVER_MUCH_ROBOTS_SEE: Way = {
-    (upper_ends.UpperEnds, "_run_concave"): lambda *_: Stop.NODES,
-    (upper_ends, "UNSEEN"): 0.0,
+    (upper_bound_portfolio.UpperBoundPortfolio, "_run_concave"): lambda *_: Stop.NODES,
+    (upper_bound_portfolio, "UNSEEN"): 0.0,
 }
 COVERS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(marginal_search.MarginalSearch, "of"): lambda *_: None}
 MARGINALS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(cover_search.CoverSearch, "of"): lambda *_: None}
@@ -101,11 +100,13 @@ def trees_begun(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The number of nodes at which each further tree begins from now on."""
     begun: list[int] = []
 
-    def begin_next(search: upper_ends.RestartedSearch, plain=upper_ends.RestartedSearch._begin_next) -> None:
+    def begin_next(
+        search: upper_bound_portfolio.RestartedSearch, plain=upper_bound_portfolio.RestartedSearch._begin_next
+    ) -> None:
         begun.append(search.first.incumbent.budget.nodes)
         plain(search)
 
-    monkeypatch.setattr(upper_ends.RestartedSearch, "_begin_next", begin_next)
+    monkeypatch.setattr(upper_bound_portfolio.RestartedSearch, "_begin_next", begin_next)
     return begun
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, solve_maxmin
 from ratt_opt.solvers.maxmin.candidates import Candidates
-from ratt_opt.solvers.maxmin.turns import Turns
+from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 from ratt_opt.solvers.maxmin.winners import Winners
 from tests.solvers.maxmin.engine import UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper
@@ -30,15 +30,15 @@ def two_triangles(rng: np.random.Generator, kind: str) -> Problem:
 @pytest.mark.parametrize("seed", [0, 17, 29, 32, 39, 41, 48, 56])
 def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     hopeful, reopened = True, 0
-    level, prove, reopen = Candidates.level.fget, Turns.prove, Winners.reopen
+    level, prove, reopen = Candidates.level.fget, TimeSlices.prove, Winners.reopen
 
     def hoped_for(plans: Candidates) -> float:
         return level(plans) * (TOO_MUCH if hopeful else 1.0)
 
-    def disappointed(turns: Turns) -> bool:
+    def disappointed(slices: TimeSlices) -> bool:
         nonlocal hopeful
         was, hopeful = hopeful, False
-        return prove(turns) or was
+        return prove(slices) or was
 
     def counted(winners: Winners, *about: object) -> None:
         nonlocal reopened
@@ -46,7 +46,7 @@ def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPat
         reopen(winners, *about)
 
     monkeypatch.setattr(Candidates, "level", property(hoped_for))
-    monkeypatch.setattr(Turns, "prove", disappointed)
+    monkeypatch.setattr(TimeSlices, "prove", disappointed)
     monkeypatch.setattr(Winners, "reopen", counted)
     go(monkeypatch, UNLISTED)
     problem = two_triangles(np.random.default_rng([9, seed]), list(OBJECTIVES)[seed % 3])

@@ -6,7 +6,7 @@ import pytest
 
 from ratt_opt import Problem, random_scenario, ratt, solve_maxmin, worst_case_attack
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin.adversary import QUICK_SHARE, LastingAttacks
+from ratt_opt.solvers.maxmin.adversary import QUICK_SHARE, PlanIndependentAttacks
 from ratt_opt.solvers.maxmin.incumbent import IMPROVED_SHARE, Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from tests.attackers.engine import exchanges_near, first_attack
@@ -86,7 +86,7 @@ def test_attacks_that_last_are_left_out_where_they_take_long(
     """The 368 groups of one attack took all of ten seconds."""
     problem, plan = search.problem, search.candidates.first
     attack = worst_case_attack(problem, plan).attack
-    lasting = LastingAttacks(problem, search.budget)
+    lasting = PlanIndependentAttacks(problem, search.budget)
     monkeypatch.setattr(Budget, "part", lambda *_: Budget(time_limit=0.0))
     assert lasting.of(attack) is attack
     monkeypatch.undo()

@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
 
-__all__ = ["MOST_CHOICES", "Choices"]
+__all__ = ["MOST_CHOICES", "CoverChoices"]
 
 MOST_CHOICES = 64
 """Elements of one robot: a set of them is a mask of 64 bits."""
 
 
-class Choices:
+class CoverChoices:
     """Elements of N robots; what a group of robots is worth by them, and what it is worth if few are kept.
 
     ``owner`` : (E,) the robot of each element; ``bit`` : (E,) its place among the robot's
@@ -70,7 +70,7 @@ class Choices:
         loops.bound_robots(self.record, address(self.masks), address(self.strongest))
 
     @classmethod
-    def of(cls, problem: Problem) -> Choices:
+    def of(cls, problem: Problem) -> CoverChoices:
         """A problem's."""
         objective = problem.information_objective
         sees = np.trace(objective.information, axis1=-2, axis2=-1) > 0

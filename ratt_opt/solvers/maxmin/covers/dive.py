@@ -14,7 +14,7 @@ from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, UpperProof
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.solvers.maxmin.covers.choices import Choices
+    from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
     from ratt_opt.solvers.maxmin.covers.separation import Separation
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.proof import Cover
@@ -40,7 +40,7 @@ class Stack:
     ``allowed`` : (N + 1, N) masks of the elements that are allowed in each frame
     """
 
-    def __init__(self, choices: Choices) -> None:
+    def __init__(self, choices: CoverChoices) -> None:
         n, e = choices.element.shape[0], choices.elements.count
         self.allowed, strongest = np.zeros((n + 1, n), np.uint64), np.zeros((n + 1, *choices.strongest.shape))
         self.allowed[0], strongest[0] = choices.masks, choices.strongest
@@ -70,7 +70,7 @@ class Stack:
         return int(self.record.frame)
 
 
-class Record:
+class DiveRecord:
     """The nodes of a search: the last one is the root.
 
     A node's subject is a cover, a sum, or the node of the dead end. What ends a frame has robot -1.
@@ -145,7 +145,7 @@ class Dive:
 
     def __init__(self, separation: Separation, sums: CoverSums) -> None:
         self._separation, self._sums, self._choices = separation, sums, separation.choices
-        self.record, self._stack = Record(FIRST_RECORD), Stack(separation.choices)
+        self.record, self._stack = DiveRecord(FIRST_RECORD), Stack(separation.choices)
 
     @property
     def frame(self) -> int:

@@ -26,7 +26,7 @@ from ratt_opt.native.loops import CoversRecord
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.covers.choices import Choices
+    from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
     from ratt_opt.solvers.maxmin.proof import Cover
 
 __all__ = ["CoverPool", "cover_bound"]
@@ -61,7 +61,7 @@ class CoverPool:
     ``level`` : (K,) the least level that the cover is true for
     """
 
-    def __init__(self, choices: Choices) -> None:
+    def __init__(self, choices: CoverChoices) -> None:
         self._choices = choices
         self._known: dict[tuple[int, bytes], int] = {}
         self._counted = 0

@@ -14,7 +14,7 @@ from ratt_opt.native.library import address, check_numbers, checked
 from ratt_opt.native.loops import WaysRecord
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import from_triangles
-from ratt_opt.solvers.maxmin.covers.choices import Choices
+from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
 from ratt_opt.solvers.maxmin.elements import padded
 from ratt_opt.solvers.maxmin.proof import Cover
@@ -50,7 +50,9 @@ class Ways:
     InputError : a shape or a type is another, or a number is not that of a group, or of a partition.
     """
 
-    def __init__(self, choices: Choices, members: BoolArray, inside: BoolArray, of: IntArray, order: IntArray) -> None:
+    def __init__(
+        self, choices: CoverChoices, members: BoolArray, inside: BoolArray, of: IntArray, order: IntArray
+    ) -> None:
         groups, partitions = len(members), len(order)
         widest = np.shape(of)[-1] if np.ndim(of) == 2 else 0
         self._arrays = members, inside, of, order  # the record has their addresses only
@@ -133,7 +135,7 @@ class Separation:
     """Finds covers of one problem for any level, and puts them into its ``pool``."""
 
     def __init__(self, problem: Problem) -> None:
-        self.problem, self.choices = problem, Choices.of(problem)
+        self.problem, self.choices = problem, CoverChoices.of(problem)
         self.partitions, self.pool = Partitions(problem), CoverPool(self.choices)
         self._rng = np.random.default_rng(0)
         self.enough = self.choices.enough

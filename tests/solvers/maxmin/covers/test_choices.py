@@ -12,7 +12,7 @@ import pytest
 from ratt_opt import InputError
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.solvers.maxmin import marginal_tables
-from ratt_opt.solvers.maxmin.covers.choices import Choices
+from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
 from ratt_opt.solvers.maxmin.covers.dive import CoverSums, Dive, Sums
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
 from ratt_opt.solvers.maxmin.covers.separation import Ways
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 CASES = [(kind, dimension, seed) for kind in ("trace", "logdet") for dimension in (1, 2, 3, 5) for seed in range(8)]
 
 
-def random_choices(kind: str, dimension: int, seed: int) -> tuple[InformationObjective, Choices, Any]:
+def random_choices(kind: str, dimension: int, seed: int) -> tuple[InformationObjective, CoverChoices, Any]:
     rng = np.random.default_rng([seed, dimension])
     robots, targets = int(rng.integers(1, 5)), int(rng.integers(1, 5))
     owner = np.sort(np.concatenate([np.arange(robots), rng.integers(0, robots, rng.integers(0, 6))]))
@@ -39,7 +39,7 @@ def random_choices(kind: str, dimension: int, seed: int) -> tuple[InformationObj
     objective = CRITERIA[kind](prior, root @ np.swapaxes(root, -1, -2), rng.uniform(0.2, 5, targets))
     sees = objective.information.any(axis=(-2, -1))
     packed = PackedElements.of(objective, objective.information, sees)
-    return objective, Choices(packed, owner, rng.random(robots) < 0.2, int(rng.integers(1, robots + 2))), rng
+    return objective, CoverChoices(packed, owner, rng.random(robots) < 0.2, int(rng.integers(1, robots + 2))), rng
 
 
 def least_eigenvalue(matrix: Any) -> float:
@@ -92,7 +92,7 @@ def test_lost_targets_and_kept_elements_leave_no_more_than_the_level(kind: str, 
             check_kept(objective, choices, kept[g], unpacked(sums, dimension), level)
 
 
-def check_kept(objective: InformationObjective, choices: Choices, kept: Any, sums: Any, level: float) -> None:
+def check_kept(objective: InformationObjective, choices: CoverChoices, kept: Any, sums: Any, level: float) -> None:
     """The bound is at most the level, and no choice of kept elements tells more than where it is taken."""
     bound = float((objective.criterion(objective.prior_information) - objective.criterion(sums)).sum())
     assert bound <= level * (1 + 1e-9) + 1e-9 * abs(bound) + 1e-9
@@ -119,7 +119,9 @@ def packed_elements(count: int, targets: int = 2, **changed: Any) -> PackedEleme
 @pytest.mark.parametrize(("robots", "elements"), [(0, 0), (1, 0), (1, 1), (1, 64)])
 @pytest.mark.parametrize("groups", [0, 1])
 def test_the_smallest_tables(robots: int, elements: int, targets: int, groups: int):
-    choices = Choices(packed_elements(elements, targets), np.zeros(elements, np.int64), np.zeros(robots, np.bool_), 1)
+    choices = CoverChoices(
+        packed_elements(elements, targets), np.zeros(elements, np.int64), np.zeros(robots, np.bool_), 1
+    )
     members = np.ones((groups, robots), np.bool_)
     inside, values = np.take(members, choices.owner, axis=1), choices.group_values(members)
     paid, kept = choices.lose(inside, np.ones(elements), values, 0.5, np.ones_like(values))
@@ -176,7 +178,7 @@ def other_forms(name: str, array: Any, is_written: bool) -> list[Any]:
 def good_calls() -> list[tuple[Callable[..., object], dict[str, Any], set[str]]]:
     """Calls that are answered, by their arrays, and which of these are written."""
     elements, owner, safe = packed_elements(3), np.array([0, 0, 1]), np.array([False, True])
-    choices = Choices(elements, owner, safe, 2)
+    choices = CoverChoices(elements, owner, safe, 2)
     choosers = np.array([2, 1])
     members, inside = np.ones((2, 2), np.bool_), np.ones((2, 3), np.bool_)
     price, two = np.ones(3), np.ones((2, 2))
@@ -186,7 +188,7 @@ def good_calls() -> list[tuple[Callable[..., object], dict[str, Any], set[str]]]
     }
     return [
         (lambda **given: packed_elements(3, **given), arrays, set()),
-        (lambda owner, safe: Choices(elements, owner, safe, 2), {"owner": owner, "safe": safe}, set()),
+        (lambda owner, safe: CoverChoices(elements, owner, safe, 2), {"owner": owner, "safe": safe}, set()),
         (choices.group_values, {"members": members}, set()),
         (
             lambda **given: choices.lose(level=0.5, **given),
@@ -230,7 +232,7 @@ def test_what_c_may_not_read_is_refused():
 
 
 def test_numbers_that_are_not_there_are_refused():
-    choices = Choices(packed_elements(3), np.array([0, 0, 1]), np.array([False, True]), 2)
+    choices = CoverChoices(packed_elements(3), np.array([0, 0, 1]), np.array([False, True]), 2)
     members, inside = np.ones((2, 2), np.bool_), np.ones((2, 3), np.bool_)
     for of, order in (([[2, 1]], [0]), ([[-2, 1]], [0]), ([[0, 1]], [1]), ([[0, 1]], [-1])):
         with pytest.raises(InputError):
@@ -239,9 +241,9 @@ def test_numbers_that_are_not_there_are_refused():
             marginal_tables.Attacks(np.ones(2, np.uint64), np.array(of), np.array(order))
     for owner, enough in (([0, 0, 2], 2), ([0, 0, -1], 2), ([0, 0, 1], 0), ([0, 0, 1], 4)):
         with pytest.raises(InputError):
-            Choices(choices.elements, np.array(owner), choices.safe, enough)
+            CoverChoices(choices.elements, np.array(owner), choices.safe, enough)
     with pytest.raises(InputError):
-        Choices(packed_elements(65), np.zeros(65, np.int64), np.zeros(1, np.bool_), 1)
+        CoverChoices(packed_elements(65), np.zeros(65, np.int64), np.zeros(1, np.bool_), 1)
     with pytest.raises(InputError):
         Sums(3, np.ones((2, 3)), np.array([2]), np.ones(2))
     for sizes in ([2, 2], [3, 0], [4, -1], [1] * 65):
@@ -257,7 +259,7 @@ def test_a_full_pool_has_room_for_partitions_into_more_groups(seed: int, monkeyp
     """Covers of partitions into one to four groups, in any order, are kept as they were added."""
     monkeypatch.setattr("ratt_opt.solvers.maxmin.covers.pool.FIRST_ROOM", 2)
     elements, rng, added = 6, np.random.default_rng(seed), dict[int, tuple[Any, list[Any], float]]()
-    pool = CoverPool(Choices(packed_elements(elements, 2), np.arange(elements), np.zeros(elements, np.bool_), 1))
+    pool = CoverPool(CoverChoices(packed_elements(elements, 2), np.arange(elements), np.zeros(elements, np.bool_), 1))
     for _ in range(30):
         partition = int(rng.integers(0, 4))
         left_out, level = rng.random(elements) < 0.5, float(rng.random())

@@ -12,7 +12,7 @@ from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
-from ratt_opt.solvers.maxmin.solve import proved_by_tangents, search_in_all_coordinates
+from ratt_opt.solvers.maxmin.solve import proved_by_tangents, solve_in_coordinates
 from tests.solvers.maxmin.proofs import proved_upper
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def test_rows_begin_at_the_root_where_elements_see_many_targets() -> None:
 @pytest.mark.parametrize("kind", ["trace", "logdet"])
 def test_rows_that_begin_later_change_nothing_before(kind: str) -> None:
     problem = covering_team(np.random.default_rng(3), robots=6, paths=4, targets=9, lost=2, kind=kind)
-    one, other = (search_in_all_coordinates(problem, Budget(), by_rows=by_rows) for by_rows in (True, False))
+    one, other = (solve_in_coordinates(problem, Budget(), by_rows=by_rows) for by_rows in (True, False))
     assert 0 < one.nodes < RowParams().nodes
     assert (one.nodes, one.lower, one.upper) == (other.nodes, other.lower, other.upper)
 
@@ -89,7 +89,7 @@ def test_rows_that_begin_later_change_nothing_before(kind: str) -> None:
 def test_rows_may_begin_in_the_middle_of_a_tree(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(RowSeparation, "first_node", lambda _: 3)
     problem = covering_team(np.random.default_rng(4), robots=5, paths=4, targets=9, lost=2, kind=kind)
-    result = search_in_all_coordinates(problem, Budget(), in_depth=False)
+    result = solve_in_coordinates(problem, Budget(), in_depth=False)
     assert any(cut.lemmas for cut in result.proof.cuts)
     assert result.lower == pytest.approx(exhaustive_optimum(problem).lower, rel=1e-9)
     assert result.lower <= proved_upper(problem, result.proof) <= result.upper * (1 + 1e-9)

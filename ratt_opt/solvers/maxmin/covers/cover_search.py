@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.levels import Outcome
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 
 __all__ = ["CoverSearch"]
 
@@ -152,8 +152,8 @@ class CoverLevelSearch(LevelSearch):
         """True if the record is as long as memory should hold."""
         return self.dive.is_long
 
-    def _begin(self, turns: Turns) -> None:
-        self._ask(0, turns, ROUNDS_AT_ROOT)
+    def _begin(self, slices: TimeSlices) -> None:
+        self._ask(0, slices, ROUNDS_AT_ROOT)
 
     def _search_on(self) -> Outcome:
         return self.dive.run(self.level, RUN)
@@ -161,27 +161,27 @@ class CoverLevelSearch(LevelSearch):
     def _plan(self) -> IntArray:
         return self.dive.plan()
 
-    def _heed(self, plan: IntArray, outcome: int) -> None:
+    def _use_attack(self, plan: IntArray, outcome: int) -> None:
         """Keep the cover that the attack shows."""
         self._separation.from_attack(plan, self._incumbent.pool.attack(outcome), self.level)
 
-    def _learn(self, turns: Turns) -> None:
+    def _learn(self, slices: TimeSlices) -> None:
         """Look for the first frame of the stack that is a dead end by a sum of covers."""
         first, last = 0, self.dive.frame
         while first < last:
             middle = (first + last) // 2
-            if self._ask(middle, turns, ROUNDS):
+            if self._ask(middle, slices, ROUNDS):
                 last = middle
             else:
                 first = middle + 1
 
-    def _ask(self, frame: int, turns: Turns, rounds: int) -> bool:
+    def _ask(self, frame: int, slices: TimeSlices, rounds: int) -> bool:
         """Decide whether a sum of covers proves a frame to be a dead end; the sum is kept."""
         allowed, pool = self.dive.allowed(frame), self._separation.pool
         for _ in range(rounds):
-            if turns.stop() is not None:
+            if slices.stop() is not None:
                 return False
-            relaxed = self._program.solve(allowed, turns.seconds_left)
+            relaxed = self._program.solve(allowed, slices.seconds_left)
             if relaxed is None:
                 return False
             lacking, terms = self._program.lacking(relaxed, allowed)

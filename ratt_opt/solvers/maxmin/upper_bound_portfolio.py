@@ -1,4 +1,4 @@
-"""The upper ends of a search in turns: concave relaxations, and a search in depth if robots see few targets.
+"""Portfolio of searches for the upper bound: concave relaxations, and a search in depth if robots see few targets.
 
 Before any of them, monotonicity bounds all plans: no plan gives a group more information than all elements of its
 robots together, and the criteria do not decrease with information. As a proof it is one tangent a group, which touches
@@ -21,20 +21,20 @@ from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.budget import Stop
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.solvers.maxmin.covers.search import CoverSearch
+from ratt_opt.solvers.maxmin.branch_and_bound import BranchAndBound
+from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.elements import Elements
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.proof import Leaf, TangentCut, UpperProof, WinnerBranch
-from ratt_opt.solvers.maxmin.search import BranchAndBound
-from ratt_opt.solvers.maxmin.turns import TurnsUntil
+from ratt_opt.solvers.maxmin.time_slices import TimeSlicesUntil
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.maxmin.known import Known, Progress
     from ratt_opt.solvers.maxmin.levels import SearchByLevels
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 
-__all__ = ["MonotoneBound", "RestartedSearch", "UpperEnds", "monotone_bound"]
+__all__ = ["MonotoneBound", "RestartedSearch", "UpperBoundPortfolio", "monotone_bound"]
 
 FIRST_NODES = 100
 """Nodes of the first tree: most searches end within. With 20, ten robots took a third longer."""
@@ -47,7 +47,7 @@ SUMS = frozenset((TraceObjective.compiled_code, LogDetObjective.compiled_code))
 """Criteria that are sums over targets."""
 UNSEEN = 0.25
 """Least share of pairs of an element and a target without information for a search in depth."""
-TURN, TURN_GROWTH = 20, 2.0
+SLICE, SLICE_GROWTH = 20, 2.0
 """Nodes of the concave search's second turn, after its root, and how many times as many each later one has."""
 NODES_IN_DEPTH = 10
 """Nodes that the search in depth has for each of the concave one's."""
@@ -104,13 +104,13 @@ class RestartedSearch:
         """The proof of :attr:`upper`."""
         return self._lowest().proof()
 
-    def run(self, turns: Turns, progress: Progress) -> Stop:
+    def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         while True:
-            stop = self._current.run(TurnsUntil(turns, self._is_given_up), self._told(progress))
+            stop = self._current.run(TimeSlicesUntil(slices, self._is_given_up), self._told(progress))
             if stop is Stop.GAP:
                 return stop
-            if (reason := turns.budget.stop() or turns.stop()) is not None:
+            if (reason := slices.budget.stop() or slices.stop()) is not None:
                 return reason
             if self._current is self.first and self._until < MORE_NODES and self._is_nearly_done():
                 self._until = MORE_NODES
@@ -141,14 +141,14 @@ class RestartedSearch:
         self._current = BranchAndBound(self._known, depth_first=True)
 
 
-class UpperEnds:
+class UpperBoundPortfolio:
     """The smallest of all bounds, with its proof; may be interrupted at any point, as all of them may."""
 
     def __init__(self, known: Known, *, in_depth: bool = True) -> None:
         self._concave = RestartedSearch(known)
         self._known = known
         self._in_depth = _search_in_depth(known) if in_depth else None
-        self._turn = float(TURN)
+        self._slice = float(SLICE)
 
     @property
     def upper(self) -> float:
@@ -159,30 +159,30 @@ class UpperEnds:
         """The proof of :attr:`upper`."""
         return min(self._ends(), key=lambda end: end.upper).proof()
 
-    def run(self, turns: Turns, progress: Progress) -> Stop:
+    def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         if self._in_depth is None:
-            return self._concave.run(turns, progress)
+            return self._concave.run(slices, progress)
         most = 1.0
         while True:
-            before = turns.budget.nodes
-            stop = self._run_concave(turns, progress, int(most))
-            if stop is Stop.NODES and turns.budget.stop() is None:
-                stop = self._in_depth.run(turns, progress, self.upper, int(NODES_IN_DEPTH * self._turn))
-            if stop is not Stop.NODES or turns.budget.stop() is not None:
+            before = slices.budget.nodes
+            stop = self._run_concave(slices, progress, int(most))
+            if stop is Stop.NODES and slices.budget.stop() is None:
+                stop = self._in_depth.run(slices, progress, self.upper, int(NODES_IN_DEPTH * self._slice))
+            if stop is not Stop.NODES or slices.budget.stop() is not None:
                 return stop
-            if turns.budget.nodes == before:  # all that is left is what margins for rounding leave
+            if slices.budget.nodes == before:  # all that is left is what margins for rounding leave
                 return Stop.GAP
-            most = self._turn
-            self._turn *= TURN_GROWTH
+            most = self._slice
+            self._slice *= SLICE_GROWTH
 
     def _ends(self) -> list[RestartedSearch | SearchByLevels]:
         return [self._concave] if self._in_depth is None else [self._concave, self._in_depth]
 
-    def _run_concave(self, turns: Turns, progress: Progress, nodes: int) -> Stop:
-        until = turns.budget.nodes + nodes
+    def _run_concave(self, slices: TimeSlices, progress: Progress, nodes: int) -> Stop:
+        until = slices.budget.nodes + nodes
         told = progress and (lambda nodes, lower, upper: progress(nodes, lower, min(upper, self.upper)))
-        return self._concave.run(TurnsUntil(turns, lambda: turns.budget.nodes >= until), told)
+        return self._concave.run(TimeSlicesUntil(slices, lambda: slices.budget.nodes >= until), told)
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:

@@ -1,4 +1,4 @@
-"""When a search for the upper end stops for a while: for a proof of the best plan, or for another search."""
+"""Time slices of a search for the upper bound, between which the best plan is proved, or another search runs."""
 
 from __future__ import annotations
 
@@ -12,30 +12,30 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
 
-__all__ = ["Turns", "TurnsUntil"]
+__all__ = ["TimeSlices", "TimeSlicesUntil"]
 
 SEARCH_SHARE = 0.25
 """Share of the time left that is searched before an unproved plan is attacked exactly."""
 
 
-class Turns:
-    """Says when it is time to stop searching: for good, or to prove the best plan's value."""
+class TimeSlices:
+    """Clock of a search: it stops for good, or to prove the best plan's value."""
 
     def __init__(self, budget: Budget, incumbent: Incumbent) -> None:
         self.budget, self.incumbent = budget, incumbent
-        self._turn = budget.part(SEARCH_SHARE)
+        self._slice = budget.part(SEARCH_SHARE)
 
     @property
     def seconds_left(self) -> float:
         """Seconds until it is time to stop, as far as that is known."""
         left = self.budget.seconds_left
-        return left if self.incumbent.is_proved else min(left, self._turn.seconds_left)
+        return left if self.incumbent.is_proved else min(left, self._slice.seconds_left)
 
     def stop(self) -> Stop | None:
         """Why to stop searching now, if at all."""
         if (stop := self.budget.stop()) not in {None, Stop.NODES}:
             return stop
-        return Stop.TIME if self._turn.stop() is Stop.TIME and not self.incumbent.is_proved else None
+        return Stop.TIME if self._slice.stop() is Stop.TIME and not self.incumbent.is_proved else None
 
     def stop_within_node(self) -> Stop | None:
         """Why to stop before the node in work is done: one that a limit of nodes admits is."""
@@ -45,21 +45,21 @@ class Turns:
     def prove(self) -> bool:
         """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
         goes_on = self.incumbent.prove()
-        self._turn = self.budget.part(SEARCH_SHARE)
+        self._slice = self.budget.part(SEARCH_SHARE)
         return goes_on
 
 
-class TurnsUntil(Turns):
-    """The turns of a search that stops as at a limit of nodes, too, when ``is_enough`` says so."""
+class TimeSlicesUntil(TimeSlices):
+    """Time slices of a search that also stops, as at a limit of nodes, when ``is_enough`` holds."""
 
-    def __init__(self, turns: Turns, is_enough: Callable[[], bool]) -> None:
-        self.budget, self.incumbent, self._turns, self._is_enough = turns.budget, turns.incumbent, turns, is_enough
+    def __init__(self, slices: TimeSlices, is_enough: Callable[[], bool]) -> None:
+        self.budget, self.incumbent, self._slices, self._is_enough = slices.budget, slices.incumbent, slices, is_enough
 
     @property
     def seconds_left(self) -> float:
-        """Seconds left to the turns themselves."""
-        return self._turns.seconds_left
+        """Seconds left to the slices themselves."""
+        return self._slices.seconds_left
 
     def stop(self) -> Stop | None:
         """Why to stop searching now, if at all."""
-        return self._turns.stop() or (Stop.NODES if self._is_enough() else None)
+        return self._slices.stop() or (Stop.NODES if self._is_enough() else None)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.known import Known, Progress
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
-    from ratt_opt.solvers.maxmin.turns import Turns
+    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 
 __all__ = ["BranchAndBound"]
 
@@ -64,16 +64,16 @@ class BranchAndBound:
         """The proof of the bound: winners decided for all plans, then the tree."""
         return upper_proof(self.winners.above(self.root), self.pool.attack, self.cuts.record)
 
-    def run(self, turns: Turns, progress: Progress) -> Stop:
+    def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         while not self._is_finished():
-            if (stop := turns.budget.stop() or turns.stop()) is not None:
+            if (stop := slices.budget.stop() or slices.stop()) is not None:
                 return stop
-            if (stop := self._explore_next(turns)) is not None:
+            if (stop := self._explore_next(slices)) is not None:
                 return stop
             self.backjumps.follow()
             if progress is not None:
-                progress(turns.budget.nodes, self.incumbent.proved.lower, self.upper)
+                progress(slices.budget.nodes, self.incumbent.proved.lower, self.upper)
         return Stop.GAP
 
     def _is_finished(self) -> bool:
@@ -82,26 +82,26 @@ class BranchAndBound:
             self.winners.reopen(outcome, self.root, self.frontier)
         return self.frontier.is_closed and not self.frontier.reopen()
 
-    def _explore_next(self, turns: Turns) -> Stop | None:
+    def _explore_next(self, slices: TimeSlices) -> Stop | None:
         """Bound the open node of largest bound, then close it or divide it; why to stop if it is neither."""
         node = self.frontier.take()
-        turns.budget.nodes += 1
-        stop = self._explore(node, turns)
+        slices.budget.nodes += 1
+        stop = self._explore(node, slices)
         if stop is not None:
             assert self.frontier.current is not None
             self.frontier.push(self.frontier.current)
         self.frontier.current = None
         return stop
 
-    def _explore(self, node: TreeNode, turns: Turns) -> Stop | None:
+    def _explore(self, node: TreeNode, slices: TimeSlices) -> Stop | None:
         """Bound one node by rounds of cuts, then close it or divide it; why to stop if it is neither."""
         narrowed = self.small.narrow(node, self.rule.better) if self.rule.level > 0 else node
         if narrowed is None:
             return None
         self.frontier.current = node = narrowed
-        nodes, stalls = turns.budget.nodes, 0
+        nodes, stalls = slices.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
-        why_stop = turns.stop_within_node if self.rounds.begins_with_rows else turns.stop
+        why_stop = slices.stop_within_node if self.rounds.begins_with_rows else slices.stop
         self.rounds.begin(node)
         while True:
             relaxed = None if why_stop() else self.rounds.solve(node)
