@@ -98,7 +98,7 @@ let problem value =
     [ "objective"; "dimension"; "prior"; "information"; "weights"; "owners"; "links"; "alpha_s"; "alpha_c";
       "protected_robots"; "protected_links" ] in
   match fields "problem" (if has_output then given @ [ "output" ] else given) value with
-  | kind :: d :: prior :: information :: weights :: owners :: pairs :: blinded :: cut :: safe_robots :: safe_links :: part ->
+  | kind :: d :: prior :: information :: weights :: owners :: pairs :: blinded :: cut :: safe_robots :: safe_links :: stated ->
       let kind = objective kind in
       let d = index "dimension" d in
       if d > 100 then format "dimension" "must be at most 100";
@@ -107,10 +107,15 @@ let problem value =
       if top >= 1000 then format "owners" "must be below 1000";
       let size = List.length owners in
       let row value = List.map (exacts "information") (array "information" value) in
+      let part value =
+        let count = List.length (array "output" value) in
+        if count = 0 || d = 0 || count mod d > 0 || count > d * d then
+          format "output" "must hold rows of as many numbers as the dimension, and at most as many rows";
+        exacts "output" value in
       let pb =
         { objective = kind; dimension = nat_of_int d; priors = List.map (exacts "prior") (array "prior" prior);
           weights = exacts "weights" weights;
-          outputs = Option.map (fun all -> List.map (exacts "output") (array "output" all)) (List.nth_opt part 0);
+          outputs = Option.map (fun all -> List.map part (array "output" all)) (List.nth_opt stated 0);
           informations = List.map row (array "information" information);
           net =
             { top_robot = nat_of_int top; owners = List.map nat_of_int owners; link_list = links "links" pairs;

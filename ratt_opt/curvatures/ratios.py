@@ -49,7 +49,8 @@ LARGEST_PAIRS = 1.5e8
 SAMPLES = 200
 """Random sets whose subsets are all looked at, if the domain is too large."""
 RATIO_ROUNDING = 128 * UNIT
-"""Relative error of a quotient of a sum of up to 24 differences, and a difference, of exact numbers."""
+"""Relative error of a quotient of a sum of up to 24 differences, and a difference, of exact numbers: a term is rounded
+at most 25 times, and moved by the noise in each; the quotient a few times more. That is less than half of this."""
 SAMPLED_SIZE = 8
 """Elements of each: 3**8 nested pairs take 0.1 ms compiled, so that all samples take a fraction of a second."""
 

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 __all__ = ["complement_above", "complement_below", "quotient_above", "quotient_below"]
 
 QUOTIENT = 8 * UNIT
-"""Relative error of a quotient of a difference, and a difference, of exact numbers, with the noise added to both."""
+"""Relative error of a quotient of a difference, and a difference, of exact numbers, with the noise added to both: seven
+roundings (two differences, two sums, the quotient, the factor and the product with it), and their products."""
 
 
 def quotient_below(part: FloatArray, whole: FloatArray, noise: float) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -30,9 +31,22 @@ MORE = 1 + 1e-12
 SPLIT = 2.0**27 + 1
 """Factor that splits a float64 into halves whose products are exact (Dekker 1971)."""
 SMALL = 2.0**-480
-"""Beside 1, squares of numbers below this may lose digits to underflow."""
-LAST_DIGITS = 8
-"""Units in the last place by which an entry may shrink: a product of two rows is off by three."""
+"""Beside 1, squares of numbers below this may lose digits to underflow: a square has 106 bits, so its last digit is at
+least ``2^(2 * -480 - 106) = 2^-1066``, and float64 goes down to ``2^-1074``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ShrinkParams:
+    """Limit of a repair.
+
+    ``last_digits`` : units in the last place by which an entry may shrink: a product of two rows is off by three.
+        More mends what is further from semidefinite, and changes it more
+    """
+
+    last_digits: int = 8
+
+
+SHRINK = ShrinkParams()
 
 
 def largest_sizes(information: FloatArray, choices: Sequence[IntArray]) -> FloatArray:
@@ -118,7 +132,7 @@ def shrunk_to_semidefinite(matrices: FloatArray) -> FloatArray:
         wrong = np.nonzero(_planar_negative_part(a, b, c) > 0)
         a, given, c = a[wrong], b[wrong], c[wrong]
         shrunk = given
-        for _ in range(LAST_DIGITS):
+        for _ in range(SHRINK.last_digits):
             shrunk = np.where(_planar_negative_part(a, shrunk, c) > 0, np.nextafter(shrunk, 0.0), shrunk)
         shrunk = np.where(_planar_negative_part(a, shrunk, c) > 0, given, shrunk)
         if len(shrunk):

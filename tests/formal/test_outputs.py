@@ -126,6 +126,17 @@ def test_rows_of_zeros_change_nothing(tmp_path):
         assert decisions([path]) == [python_decision(path)] == [0]
 
 
+def test_more_rows_than_columns_are_refused_alike(tmp_path):
+    """Rows of zeros prove what they proved before, but cost time without a limit."""
+    path = tmp_path / "c.json"
+    for _, document, _ in documents(tmp_path, range(3)):
+        problem = document["problem"]
+        d = problem["dimension"]
+        problem["output"][0] += [0.0] * (d * d + d - len(problem["output"][0]))
+        path.write_text(json.dumps(document))
+        assert decisions([path]) == [python_decision(path)] == [2]
+
+
 def test_changes_are_decided_alike(tmp_path):
     found, seen, accepted = sweep(tmp_path, changeable(tmp_path, range(8)), 0.1)
     assert not found
