@@ -8,8 +8,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ratt_opt._validation import check_distinct, check_link
+from ratt_opt.attack.edge_cuts.cut_search import CutSearch
 from ratt_opt.attack.edge_cuts.network import CutNetwork, exact_integers
-from ratt_opt.attack.edge_cuts.search import CutSearch
 from ratt_opt.budget import Budget, Stop, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph

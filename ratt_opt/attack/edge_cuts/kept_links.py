@@ -25,7 +25,7 @@ FINISHED, PAUSED = 0, 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PricingParams:
+class KeptGroupParams:
     """``nodes_at_once`` : between two looks at the clock (some milliseconds); ``groups_at_once`` : of one pricing."""
 
     nodes_at_once: int = 500
@@ -33,7 +33,7 @@ class PricingParams:
     listed_at_once: int = 20_000
 
 
-PARAMS = PricingParams()
+PARAMS = KeptGroupParams()
 
 
 @dataclass(frozen=True, slots=True)

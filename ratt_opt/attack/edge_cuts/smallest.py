@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.edge_cuts.cut_search import CutSearch
 from ratt_opt.attack.edge_cuts.elimination import Elimination, TooManyStates
 from ratt_opt.attack.edge_cuts.network import CutNetwork
-from ratt_opt.attack.edge_cuts.search import CutSearch
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph, Link
