@@ -14,7 +14,7 @@ import json
 import subprocess
 import sys
 from dataclasses import dataclass
-from time import monotonic, sleep
+from time import monotonic, process_time, sleep
 
 import numpy as np
 
@@ -42,18 +42,23 @@ def plan(seed: int) -> None:
     for line in sys.stdin:
         message = json.loads(line)
         measurements = [Measurement(robot, target, tuple(values)) for robot, target, values in message["measured"]]
+        began = process_time()
         tracker.step(measurements, message["now"])
-        answer = {"controls": tracker.controls.tolist(), "missed": tracker.state.missed}
+        answer = {"controls": tracker.controls.tolist(), "missed": tracker.state.missed, "busy": process_time() - began}
         print(json.dumps(answer | {"trace": tracker.beliefs.trace}), flush=True)
 
 
 @dataclass(slots=True)
 class Outcome:
-    """Steps and late answers, the longest answer [s], and the tracker's own count of plans it missed."""
+    """Steps and late answers, the longest answer [s], and the tracker's own count of plans it missed.
+
+    ``busiest`` : processor time of the longest step [s], whatever else the machine does.
+    """
 
     steps: int = 0
     late: int = 0
     longest: float = 0.0
+    busiest: float = 0.0
     missed: int = 0
     trace: float = 0.0
 
@@ -78,7 +83,7 @@ def drive(steps: int, seed: int) -> Outcome:
             taken = monotonic() - asked
             outcome.steps, outcome.late = outcome.steps + 1, outcome.late + (taken > PERIOD)
             outcome.longest, outcome.missed = max(outcome.longest, taken), answer["missed"]
-            outcome.trace = answer["trace"]
+            outcome.trace, outcome.busiest = answer["trace"], max(outcome.busiest, answer["busy"])
             poses = world.move.moved(np.arange(len(poses)), poses, np.array(answer["controls"]), PERIOD)
             truth = world.motion.predict(truth, PERIOD, step * PERIOD) + 0.1 * rng.standard_normal((15, 2))
             readings = simulated_readings(world, poses, truth, rng.standard_normal((10, 15, 2)))
@@ -100,7 +105,8 @@ def main() -> int:
         return 0
     done = drive(options.steps, options.seed)
     print(
-        f"{done.steps} steps at {1 / PERIOD:g} Hz: answers late {done.late}, longest {1000 * done.longest:.0f} ms; "
+        f"{done.steps} steps at {1 / PERIOD:g} Hz: answers late {done.late}, longest {1000 * done.longest:.0f} ms "
+        f"({1000 * done.busiest:.0f} ms of the processor at most); "
         f"plans missed {done.missed}; trace {done.trace:.3g} m²"
     )
     return 0
