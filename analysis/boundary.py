@@ -8,7 +8,6 @@ Its argument ``Name *name`` is one record, ``Name name[]`` an array of them.
 from __future__ import annotations
 
 import re
-from itertools import groupby
 from textwrap import wrap
 from typing import Any
 
@@ -54,7 +53,7 @@ def generated(headers: dict[str, str]) -> str:
             functions.append(f"\n    # {family}")
         functions.append(_function(node, complete))
     protocol = 'class Loops(Protocol):\n    """Functions of the compiled loops, by header."""\n' + "\n".join(functions)
-    body = "\n\n\n".join([*records, protocol, LAST])
+    body = "\n\n".join([*records, protocol, LAST])
     return f"{_head(body)}\n\n{body}\n"
 
 
@@ -97,13 +96,17 @@ def _reachable(structs: dict[str, Any], exported: list[Any]) -> set[str]:
 
 
 def _record(node: Any, headers: dict[str, str], complete: set[str]) -> str:
-    """Return a record's class, with a line for each line of its fields in C."""
+    """Return a record's class, several fields a line."""
     place = node.type.type.coord
     comment = _comment(headers[place.file.removesuffix(".h")], place)
-    lines = [f"@record\nclass {node.name}Record(Structure):", f'    """{comment}"""']
-    for _, fields in groupby(node.type.type.decls or (), lambda one: one.coord.line):
-        lines.append("    " + "; ".join(f"{one.name}: {_field(one.type, complete)}" for one in fields))
-    return "\n".join(lines)
+    fields = " ".join(f"{one.name}:~{_field(one.type, complete)};" for one in node.type.type.decls or ())
+    lines = [f"    {line.rstrip(';')}" for line in _lines(fields, WIDTH - 4)]
+    return "\n".join(["@record", f"class {node.name}Record(Structure):", f'    """{comment}"""', *lines])
+
+
+def _lines(text: str, width: int, **indents: Any) -> list[str]:
+    """Fill lines that may end at a space; ``~`` is one where they may not."""
+    return [line.replace("~", " ") for line in wrap(text, width, break_on_hyphens=False, **indents)]
 
 
 def _comment(text: str, place: Any) -> str:
@@ -119,7 +122,7 @@ def _field(kind: Any, complete: set[str]) -> str:
     """Return the annotation of a field: numbers, records and arrays as they are, addresses."""
     if isinstance(kind, c_ast.ArrayDecl):
         element = f"c_{_name(kind.type).removesuffix('_t')}"
-        return f"Annotated[Array[{element}], {element} * {kind.dim.value}]"
+        return f"Annotated[Array[{element}],~{element}~*~{kind.dim.value}]"
     if isinstance(kind, c_ast.PtrDecl):
         return "Anything" if isinstance(kind.type, c_ast.FuncDecl) else _array(_name(kind.type))
     return f"{_name(kind)}Record" if _name(kind) in complete else NUMBERS[_name(kind)]
@@ -145,13 +148,12 @@ def _name(kind: Any) -> str:
 
 
 def _function(node: Any, complete: set[str]) -> str:
-    """Return a method, in lines that end after an argument."""
+    """Return a method, whose lines end after an argument."""
     given = [one for one in (node.type.args.params if node.type.args else ()) if one.name]
     arguments = ["self", *(f"{one.name}:~{_argument(one.type, complete)}" for one in given)]
     text = f"def {node.name}({', '.join(arguments)})~->~{_argument(node.type.type, complete)}:~..."
-    indent = "    ", " " * len(f"    def {node.name}(")
-    lines = wrap(text, WIDTH, initial_indent=indent[0], subsequent_indent=indent[1], break_on_hyphens=False)
-    return "\n".join(lines).replace("~", " ")
+    indent = " " * len(f"    def {node.name}(")
+    return "\n".join(_lines(text, WIDTH, initial_indent="    ", subsequent_indent=indent))
 
 
 def _head(body: str) -> str:

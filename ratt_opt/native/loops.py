@@ -11,387 +11,208 @@ from ratt_opt.native.declared import (Anything, Bytes, Double, Doubles, Int, Int
 @record
 class TeamRecord(Structure):
     """Robots that measure targets."""
-    robots: Int32; targets: Int32; dimension: Int32; criterion: Int32
-    weights: Doubles
-    prior: Doubles
-    information: Doubles
-    before: Doubles
-    before_all: Double
-    relative: Double; rounding: Double
-
+    robots: Int32; targets: Int32; dimension: Int32; criterion: Int32; weights: Doubles; prior: Doubles
+    information: Doubles; before: Doubles; before_all: Double; relative: Double; rounding: Double
 
 @record
 class AnnealRecord(Structure):
     """An annealed attack; arcs of robot i are start[i]..start[i + 1] - 1."""
-    table: Doubles
-    team: Pointer[TeamRecord]
-    robots: Int64; budget: Int64
-    start: Int64s; robot: Int64s
-    fixed: Bytes; seeing: Bytes
-    group: Int64s; best_group: Int64s
-    blind: Bytes; best_blind: Bytes
-    first: Int64; last: Int64; steps: Int64
-    hot: Double; cold: Double
-    least: Doubles
-    random: UInt64s
-
+    table: Doubles; team: Pointer[TeamRecord]; robots: Int64; budget: Int64; start: Int64s; robot: Int64s; fixed: Bytes
+    seeing: Bytes; group: Int64s; best_group: Int64s; blind: Bytes; best_blind: Bytes; first: Int64; last: Int64
+    steps: Int64; hot: Double; cold: Double; least: Doubles; random: UInt64s
 
 @record
 class CutAnnealRecord(Structure):
     """An annealed cut that leaves no group with more than ``most`` robots; arcs as in ``Anneal``."""
-    robots: Int64; groups: Int64; most: Int64
-    start: Int64s; robot: Int64s
-    price: Int64s; counts: Int64s
-    group: Int64s; best: Int64s
-    sizes: Int64s
-    hot: Double; cold: Double; oversize: Double
-    random: Anything
+    robots: Int64; groups: Int64; most: Int64; start: Int64s; robot: Int64s; price: Int64s; counts: Int64s
+    group: Int64s; best: Int64s; sizes: Int64s; hot: Double; cold: Double; oversize: Double; random: Anything
     uniform: Anything
-
 
 @record
 class ElementsRecord(Structure):
     """Elements and the targets."""
-    elements: Int64; targets: Int64; entries: Int64
-    dimension: Int32; criterion: Int32
-    weights: Doubles
-    baseline: Doubles
-    prior: Doubles
-    information: Doubles
-    sees: Bytes
-    relative: Double; rounding: Double
-
+    elements: Int64; targets: Int64; entries: Int64; dimension: Int32; criterion: Int32; weights: Doubles
+    baseline: Doubles; prior: Doubles; information: Doubles; sees: Bytes; relative: Double; rounding: Double
 
 @record
 class ChoicesRecord(Structure):
     """The elements with the robots that choose."""
-    all: ElementsRecord
-    robots: Int64; widest: Int64
-    owner: Int64s; place: Int64s
-    element: Int64s
-    count: Doubles
-    safe: Bytes
-    enough: Double
-
+    all: ElementsRecord; robots: Int64; widest: Int64; owner: Int64s; place: Int64s; element: Int64s; count: Doubles
+    safe: Bytes; enough: Double
 
 @record
 class WaysRecord(Structure):
     """Partitions of the robots that cutting links leaves."""
-    groups: Int64; partitions: Int64; widest: Int64
-    members: Bytes; inside: Bytes
-    of: Int64s
-    order: Int64s
-
+    groups: Int64; partitions: Int64; widest: Int64; members: Bytes; inside: Bytes; of: Int64s; order: Int64s
 
 @record
 class CoversRecord(Structure):
     """Covers by number."""
-    size: Int64; room: Int64; groups: Int64
-    left_out: UInt64s
-    partition: Int64s
-    sums: Doubles
-    level: Doubles
-
+    size: Int64; room: Int64; groups: Int64; left_out: UInt64s; partition: Int64s; sums: Doubles; level: Doubles
 
 @record
 class SumsRecord(Structure):
     """Sums of covers by number."""
-    looked_at: Int64
-    terms: Doubles
-    tried: Int64s
-    used: Doubles
-
+    looked_at: Int64; terms: Doubles; tried: Int64s; used: Doubles
 
 @record
 class StepRecord(Structure):
     """A step forbids elements of a robot, because of a cover, a sum or a node that was a dead end."""
-    kind: Int64; what: Int64; robot: Int64
-    gone: UInt64
-
+    kind: Int64; what: Int64; robot: Int64; gone: UInt64
 
 @record
 class StackRecord(Structure):
     """Frames, which each fix an element, and steps."""
-    frame: Int64; count: Int64
-    start: UInt64s
-    allowed: UInt64s
-    strongest: Doubles
-    fixed: Int64s
-    first: Int64s
-    steps: Pointer[StepRecord]
-    reasons: UInt64s
-    since: Int64s
-    touched: Int64s
-    activity: Doubles
-
+    frame: Int64; count: Int64; start: UInt64s; allowed: UInt64s; strongest: Doubles; fixed: Int64s; first: Int64s
+    steps: Pointer[StepRecord]; reasons: UInt64s; since: Int64s; touched: Int64s; activity: Doubles
 
 @record
 class NodeRecord(Structure):
     """A node of a proof."""
     kind: Int64; subject: Int64; robot: Int64; place: Int64; next: Int64
 
-
 @record
 class NodesRecord(Structure):
     """Nodes of a proof in a growing array."""
-    size: Int64; room: Int64
-    nodes: Pointer[NodeRecord]
-
+    size: Int64; room: Int64; nodes: Pointer[NodeRecord]
 
 @record
 class CutStatesRecord(Structure):
     """Partial cuts that leave the same classes."""
-    classes: Int64; count: Int64
-    map: Int64s; states: Int64s
-
+    classes: Int64; count: Int64; map: Int64s; states: Int64s
 
 @record
 class CutFrontRecord(Structure):
     """Joined states, none as good as another."""
-    classes: Int64; most_cut: Int64; capacity: Int64; count: Int64
-    room: Int64s
-    states: Int64s
-
+    classes: Int64; most_cut: Int64; capacity: Int64; count: Int64; room: Int64s; states: Int64s
 
 @record
 class BranchRecord(Structure):
     """A node of the list of groups."""
-    inside: UInt64; outside: UInt64; near: UInt64
-    cut: Int64
-
+    inside: UInt64; outside: UInt64; near: UInt64; cut: Int64
 
 @record
 class ColumnsRecord(Structure):
     """Groups that an attack may leave; as bit masks of 64 bits where they are ``wide``, of 32 elsewhere."""
-    count: Int64; wide: Int64
-    groups: Anything
-    cuts: Bytes; blinded: Bytes
-
+    count: Int64; wide: Int64; groups: Anything; cuts: Bytes; blinded: Bytes
 
 @record
 class DualsRecord(Structure):
     """Integer duals, in units of a link."""
-    sums: Int64s
-    unit: Int64; blinding: Int64
-
+    sums: Int64s; unit: Int64; blinding: Int64
 
 @record
 class LevelRecord(Structure):
     """A level of the search of covers."""
-    room: Annotated[Array[c_int64], c_int64 * 3]
-    start: Int64; end: Int64; position: Int64
-    robot: Int32; column: Int32
-
+    room: Annotated[Array[c_int64], c_int64 * 3]; start: Int64; end: Int64; position: Int64; robot: Int32
+    column: Int32
 
 @record
 class CoverRecord(Structure):
     """A search of covers."""
-    robots: Int64; words: Int64; room: Int64
-    groups: UInt64s
-    costs: Int64s
-    fitting: Int32s
-    levels: Pointer[LevelRecord]
-    left: UInt64s
-    counts: Int64s
-    depth: Int64; nodes: Int64; most_nodes: Int64
-
+    robots: Int64; words: Int64; room: Int64; groups: UInt64s; costs: Int64s; fitting: Int32s
+    levels: Pointer[LevelRecord]; left: UInt64s; counts: Int64s; depth: Int64; nodes: Int64; most_nodes: Int64
 
 @record
 class KeptLinksRecord(Structure):
     """Groups with more link weight inside than their robots' prices."""
-    robots: Int64; links: Int64
-    ends: Int64s
-    start: Int64s; arc: Int64s
-    weight: Int64s
-    price: Int64s; size: Int64s
-    room: Int64; threshold: Int64; listing: Int64
-    most_found: Int64; found: Int64
-    groups: Bytes
-    values: Int64s
-    most_length: Int64; length: Int64
-    tree: Int64s
-    nodes: Int64
-
+    robots: Int64; links: Int64; ends: Int64s; start: Int64s; arc: Int64s; weight: Int64s; price: Int64s; size: Int64s
+    room: Int64; threshold: Int64; listing: Int64; most_found: Int64; found: Int64; groups: Bytes; values: Int64s
+    most_length: Int64; length: Int64; tree: Int64s; nodes: Int64
 
 @record
 class KeptSearchRecord(Structure):
     """An open search of kept links."""
 
-
 @record
 class ChoosersRecord(Structure):
     """The elements of robots, both in the order in which robots choose."""
-    all: ElementsRecord
-    robots: Int64
-    first: Int64s
-    seeing: Int64s
-
+    all: ElementsRecord; robots: Int64; first: Int64s; seeing: Int64s
 
 @record
 class AttacksRecord(Structure):
     """Attacks whose groups have no blinded robots."""
-    attacks: Int64; widest: Int64
-    members: UInt64s
-    of: Int64s
-    order: Int64s
-
+    attacks: Int64; widest: Int64; members: UInt64s; of: Int64s; order: Int64s
 
 @record
 class PathRecord(Structure):
     """Place of the search."""
-    depth: Int64; size: Int64
-    chosen: Int64s
-    seers: UInt64s
-    version: Int64s
-    record: Int32s
-
+    depth: Int64; size: Int64; chosen: Int64s; seers: UInt64s; version: Int64s; record: Int32s
 
 @record
 class GainsRecord(Structure):
     """Values and gains of each target beside the last sets of its seers."""
-    sets: Int64
-    value: Doubles
-    gain: Doubles
-    since: Int64s
-    version: Int64s
-    seers: UInt64s
-    slot: Int64s
-
+    sets: Int64; value: Doubles; gain: Doubles; since: Int64s; version: Int64s; seers: UInt64s; slot: Int64s
 
 @record
 class GreedyRecord(Structure):
     """Gains of the greedy algorithm."""
-    criterion: Int64; targets: Int64; width: Int64
-    weights: Doubles
-    information: Doubles
-    sums: Doubles
-    covariances: Doubles
-    order: Int64s
-    bounds: Doubles
-    gains: Doubles
-
+    criterion: Int64; targets: Int64; width: Int64; weights: Doubles; information: Doubles; sums: Doubles
+    covariances: Doubles; order: Int64s; bounds: Doubles; gains: Doubles
 
 @record
 class DescentRecord(Structure):
     """Descent over the contexts of one element."""
-    owners: Int64; targets: Int64
-    sign: Double; value: Double
-    relative: Double; rounding: Double
-    parts: Doubles
-    ends: Int64s
-    added: Doubles
-    total: Doubles
-    picks: Int64s
-    rest: Doubles; one: Doubles
-
+    owners: Int64; targets: Int64; sign: Double; value: Double; relative: Double; rounding: Double; parts: Doubles
+    ends: Int64s; added: Doubles; total: Doubles; picks: Int64s; rest: Doubles; one: Doubles
 
 @record
 class ProgramRecord(Structure):
     """Parts of an affine underestimator."""
-    targets: Int64; robots: Int64; heavies: Int64; patterns: Int64; size: Int64
-    first: Int64s; pattern: Int64s
-    values: Doubles; light: Doubles
-    inside: Doubles
-    heavy: Int64s
-    information: Doubles
-
+    targets: Int64; robots: Int64; heavies: Int64; patterns: Int64; size: Int64; first: Int64s; pattern: Int64s
+    values: Doubles; light: Doubles; inside: Doubles; heavy: Int64s; information: Doubles
 
 @record
 class PricingRecord(Structure):
     """A search for groups of small reduced cost."""
-    team: Pointer[TeamRecord]
-    threshold: Double; level: Double
-    n_blinded: Int64; most_cut: Int64; most: Int64
-    start: Int64s; robot: Int64s; back: Int64s
-    fixed: Bytes; seeing: Bytes
-    least_cut: Int64s
-    duals: Int64s
-    order: Int64s
-    blinding: Int64; unit: Int64; limit: Int64
-    effort: Int64
-    levels: Doubles
-    near: Int32s
+    team: Pointer[TeamRecord]; threshold: Double; level: Double; n_blinded: Int64; most_cut: Int64; most: Int64
+    start: Int64s; robot: Int64s; back: Int64s; fixed: Bytes; seeing: Bytes; least_cut: Int64s; duals: Int64s
+    order: Int64s; blinding: Int64; unit: Int64; limit: Int64; effort: Int64; levels: Doubles; near: Int32s
     filled: Bytes
-
 
 @record
 class GroupTreeRecord(Structure):
     """A tree of cases that is written for a proof."""
-    limit: Int64
-    averages: Int64
-    count: Int64; capacity: Int64
-    n_flows: Int64; most_flows: Int64
-    n_listed: Int64; most_listed: Int64
-    nodes: Int64s
-    flows: Int64s; recent: Int64s
-    listed: Int8s
-    needs: Int64s
-    n_limits: Int64
-    limited: UInt64s
-    most: Int64s; uses: Int64s
-
+    limit: Int64; averages: Int64; count: Int64; capacity: Int64; n_flows: Int64; most_flows: Int64; n_listed: Int64
+    most_listed: Int64; nodes: Int64s; flows: Int64s; recent: Int64s; listed: Int8s; needs: Int64s; n_limits: Int64
+    limited: UInt64s; most: Int64s; uses: Int64s
 
 @record
 class RowRecord(Structure):
     """A row of a tree over sets."""
-    sensing: UInt64
-    count: Int32; first: Int32; size: Int32
-
+    sensing: UInt64; count: Int32; first: Int32; size: Int32
 
 @record
 class SearchRecord(Structure):
     """An open search of groups."""
 
-
 @record
 class ScanRecord(Structure):
     """Progress of a round of exchanges, and the best one so far."""
-    next: Int64; leaves: Int64; enters: Int64
-    lowest: Double
-
+    next: Int64; leaves: Int64; enters: Int64; lowest: Double
 
 @record
 class SetQuestionRecord(Structure):
     """A search of sets of one size."""
-    team: Pointer[TeamRecord]
-    threshold: Double; level: Double; limit: Double
-    size: Int64
-    start: Doubles
-    candidates: Int64; in_order: Int64
-    order: Int64s
-    costs: Doubles
-
+    team: Pointer[TeamRecord]; threshold: Double; level: Double; limit: Double; size: Int64; start: Doubles
+    candidates: Int64; in_order: Int64; order: Int64s; costs: Doubles
 
 @record
 class SetSearchRecord(Structure):
     """An open search of sets."""
 
-
 @record
 class ChoiceRecord(Structure):
     """A level of the search of disjoint sets."""
-    decided: UInt64; rest: UInt64
-    next: Int64; chosen: Int64
-    cost: Double; value: Double
-    counts: Int32s
+    decided: UInt64; rest: UInt64; next: Int64; chosen: Int64; cost: Double; value: Double; counts: Int32s
     option: Int32; places: Int32; kept: Int32; unused: Int32
-
 
 @record
 class DisjointSetsRecord(Structure):
     """Disjoint sets from lists, by their first robots and cheapest first."""
-    robots: Int64; classes: Int64; rest: Int64; n_blinded: Int64
-    masks: UInt64s
-    values: Doubles; costs: Doubles
-    starts: Int64s
-    rest_costs: Doubles; single: Doubles
-    must: UInt64
-    threshold: Double; room: Double
-    remembered: Int64; depth: Int64; found: Int64
-    memory: UInt64s
-    stack: Pointer[ChoiceRecord]
-    best: Int64s
-
+    robots: Int64; classes: Int64; rest: Int64; n_blinded: Int64; masks: UInt64s; values: Doubles; costs: Doubles
+    starts: Int64s; rest_costs: Doubles; single: Doubles; must: UInt64; threshold: Double; room: Double
+    remembered: Int64; depth: Int64; found: Int64; memory: UInt64s; stack: Pointer[ChoiceRecord]; best: Int64s
 
 class Loops(Protocol):
     """Functions of the compiled loops, by header."""
@@ -517,7 +338,6 @@ class Loops(Protocol):
     def exchange_robots(self, team: TeamRecord, kept: Doubles, where: Int8s, pairs: Int64, scan: ScanRecord) -> Int: ...
     def search_disjoint(self, d: DisjointSetsRecord, work: Int64) -> Int: ...
     def sums_of_sets(self, count: Int64, masks: UInt64s, amounts: Doubles, sums: Doubles) -> None: ...
-
 
 loops = cast("Loops", Loader(Loops))
 """Functions, bound at the first use."""
