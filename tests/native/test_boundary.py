@@ -6,6 +6,7 @@ import ctypes
 import re
 import runpy
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from ratt_opt.native import loops as side
 from ratt_opt.native.loops import ColumnsRecord, DualsRecord, loops
 from ratt_opt.native.sources import SOURCES, TO_COMPILE
 
+ROOT = Path(__file__).parents[2]
 RECORDS = {name: kind for name, kind in vars(side).items() if name.endswith("Record")}
 CHANGES = {
     "two fields change places": ("annealing", "double hot, cold;", "double cold, hot;"),
@@ -72,8 +74,33 @@ def test_a_record_of_another_kind_is_not_passed() -> None:
         loops.within_gap(duals, columns, 0, 0, None, None)  # type: ignore[arg-type]
 
 
+MISUSES = """\
+import numpy as np
+from ratt_opt.native.library import address
+from ratt_opt.native.loops import DualsRecord, loops
+whole, floats = np.zeros(4, np.int64), np.zeros(4)
+DualsRecord(sums=address(floats), unit=1, blinding=0)
+DualsRecord(sums=address(whole), unit=1)
+DualsRecord(sums=address(whole), unit=1, blinding=0, more=1)
+loops.close_pricing(loops.open_sets())
+loops.close_pricing(loops.open_kept_links())
+loops.sums_of_sets(1, address(whole), address(floats), address(floats))
+loops.spread(address(np.zeros(4, np.uint8)), 4)
+"""
+
+
+@pytest.mark.slow
+def test_the_check_of_types_finds_what_c_would_misread(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    (tmp_path / "misuses.py").write_text(MISUSES, encoding="utf-8")
+    command = [sys.executable, "-m", "mypy", "--strict", str(tmp_path / "misuses.py")]
+    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    found = {int(line) for line in re.findall(r"misuses\.py:(\d+): error", ran.stdout)}
+    assert found == set(range(5, 12)), ran.stdout
+
+
 def test_the_compiler_puts_every_field_where_python_does(tmp_path: Path) -> None:
-    compiler = runpy.run_path(str(Path(__file__).parents[2] / "hatch_build.py"), run_name="build")["system_compiler"]()
+    compiler = runpy.run_path(str(ROOT / "hatch_build.py"), run_name="build")["system_compiler"]()
     if compiler is None:
         pytest.skip("no compiler of the system is here")
     lines = [
