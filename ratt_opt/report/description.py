@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Problem
 
-__all__ = ["Description", "View", "describe", "named"]
+__all__ = ["Description", "View", "describe", "named", "views_of"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def describe(problem: Problem, source: object = None) -> Description:
             poses=source.poses,
             poses_after=source.predicted_poses,
             targets=source.predicted_targets,
-            views=_views(source),
+            views=views_of(source),
         )
     n_targets = getattr(problem.objective, "n_targets", None)
     unnamed = (("",) * problem.n_robots, None if n_targets is None else ("",) * n_targets)
@@ -103,7 +103,8 @@ def _poses_after(source: InformationInput) -> FloatArray | None:
     return places if places is None or headings is None else np.column_stack([places, headings])
 
 
-def _views(scenario: Scenario) -> tuple[View, ...]:
+def views_of(scenario: Scenario) -> tuple[View, ...]:
+    """(N,) limits of each robot's sensor."""
     sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
     limited = [sensor.sensor if isinstance(sensor, RangeBearing) else sensor for sensor in sensors]
     return tuple(View(getattr(one, "field_of_view", None), getattr(one, "max_range", None)) for one in limited)

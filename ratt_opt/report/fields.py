@@ -12,10 +12,20 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from matplotlib.axes import Axes
+    from matplotlib.patches import Wedge
 
     from ratt_opt.report.picture import Picture
 
-__all__ = ["FIELD_WORDS", "LOST_WORDS", "WATCH_WORDS", "draw_fields", "draw_watching", "field_of", "watched_pairs"]
+__all__ = [
+    "FIELD_WORDS",
+    "LOST_WORDS",
+    "WATCH_WORDS",
+    "draw_fields",
+    "draw_watching",
+    "field_of",
+    "sector",
+    "watched_pairs",
+]
 
 FIELD_WORDS = "field of view"
 WATCH_WORDS, LOST_WORDS = "robot measures target", "measurement lost to the attack"
@@ -56,25 +66,31 @@ def draw_fields(axes: Axes, picture: Picture, robots: Collection[int]) -> None:
 
     The map holds each whole, unless it reaches farther than the team and its targets are wide.
     """
-    from matplotlib.patches import Wedge
     from matplotlib.path import Path
 
     if picture.views is None:
         return
     for i in sorted(robots):
         heading, angle, reach = field_of(picture, i)
-        middle, half = np.degrees(heading), np.degrees(angle) / 2
         colour = BLINDED if i in picture.attack.sensing else SURVIVING if i in picture.best else LOST
-        look: dict[str, Any] = {"facecolor": colour, "edgecolor": colour, "linewidth": 0.6, "zorder": 0.5}
-        is_wide = angle > np.pi
-        look |= {"fill": not is_wide, "alpha": 0.5 if is_wide else 0.13}
-        wedge = Wedge(tuple(picture.places[i]), reach, middle - half, middle + half, **look)
+        wedge = sector(tuple(picture.places[i]), reach, (heading, angle), colour)
         if reach <= _width(picture):
             axes.add_patch(wedge)
         else:
             axes.add_artist(wedge)
-    sector = Path.wedge(-30, 30)
-    axes.scatter([], [], marker=sector, s=200, color=SURVIVING, alpha=0.4, label=_words(picture))
+    icon = Path.wedge(-30, 30)
+    axes.scatter([], [], marker=icon, s=200, color=SURVIVING, alpha=0.4, label=_words(picture))
+
+
+def sector(centre: tuple[float, float], reach: float, looks: tuple[float, float], colour: str) -> Wedge:
+    """A pale sector around a heading, of a full angle [rad]; only the rim of one wider than half a turn."""
+    from matplotlib.patches import Wedge
+
+    heading, angle = looks
+    middle, half = float(np.degrees(heading)), float(np.degrees(angle)) / 2
+    look: dict[str, Any] = {"facecolor": colour, "edgecolor": colour, "linewidth": 0.6, "zorder": 0.5}
+    look |= {"fill": angle <= np.pi, "alpha": 0.13 if angle <= np.pi else 0.5}
+    return Wedge(centre, reach, middle - half, middle + half, **look)
 
 
 def draw_watching(axes: Axes, picture: Picture, robots: Collection[int]) -> None:

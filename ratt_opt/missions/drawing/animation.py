@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.missions.drawing.frames import frames_of, limits
+from ratt_opt.report.fields import sector
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 from ratt_opt.running.interrupts import imported_whole
 
@@ -61,6 +62,8 @@ def _draw(axes: Axes, frame: dict[str, Any]) -> None:
     for links, colour, style in ((frame["links"], LOST, "solid"), (frame["cut"], CUT, (0, (4, 3)))):
         segments = [(robots[i, :2], robots[j, :2]) for i, j in links]
         axes.add_collection(LineCollection(segments, colors=colour, linestyles=[style], linewidths=0.9, alpha=0.7))
+    for (x, y, heading), role, (angle, radius) in zip(frame["robots"], frame["roles"], frame["fields"], strict=False):
+        axes.add_patch(sector((x, y), radius, (heading, angle), ROLES[role][0]))
     for place, (long, short, angle) in zip(frame["estimates"], frame["ellipses"], strict=True):
         look: dict[str, Any] = {"angle": float(np.degrees(angle)), "color": TARGET, "alpha": 0.25}
         axes.add_patch(Ellipse(place, 2 * long, 2 * short, **look))

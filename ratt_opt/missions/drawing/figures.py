@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["mission_figure"]
 
+TITLE = 70
+"""Letters of a line of the title: as many as are as wide as the figure."""
 FEW_TICKS = 20.0
 """Span of an axis, as a factor, below which the ticks between powers of ten have numbers too."""
 
@@ -55,7 +58,7 @@ def mission_figure(missions: Sequence[FlownMission]) -> Figure:
         axes.legend(frameon=False, fontsize=8.5)
         axes.grid(visible=True, color="#eeeeee", linewidth=0.8)
     said = (f"{name} {literal(str(first.settings[name]))}" for name in ("planner", "attacker", "attacks"))
-    above.set_title(", ".join(said), fontsize="medium")
+    above.set_title(fill(", ".join(said), TITLE), fontsize="medium")
     choose_fonts(figure)
     return figure
 

@@ -55,6 +55,15 @@ function draw(k) {
   pen.clearRect(0, 0, width, height); axes(); pen.lineWidth = 1;
   for (const [i, j] of f.links) line(f.robots[i], f.robots[j], data.colours.link, []);
   for (const [i, j] of f.cut) line(f.robots[i], f.robots[j], data.colours.cut, [5, 4]);
+  (f.fields || []).forEach(([angle, radius], i) => {  // only the rim of one wider than half a turn: it would flood the map
+    const [x, y, heading] = f.robots[i], whole = angle >= 2 * Math.PI - 1e-9;
+    pen.fillStyle = pen.strokeStyle = data.colours[f.roles[i]]; pen.beginPath();
+    if (!whole) pen.moveTo(X(x), Y(y));
+    pen.arc(X(x), Y(y), radius * scale, -heading - angle / 2, -heading + angle / 2);
+    if (!whole) pen.closePath();
+    if (angle <= Math.PI) { pen.globalAlpha = 0.13; pen.fill(); }
+    pen.globalAlpha = 0.5; pen.stroke(); pen.globalAlpha = 1;
+  });
   f.estimates.forEach((p, j) => {
     const [a, b, angle] = f.ellipses[j];
     pen.fillStyle = data.colours.target; pen.globalAlpha = 0.25; pen.beginPath();

@@ -44,6 +44,7 @@ def player_page(mission: FlownMission) -> str:
     title = f"Mission of {mission.scenario.n_robots} robots, {mission.scenario.n_targets} targets"
     about = "; ".join(f"{name}: {value}" for name, value in mission.settings.items())
     key = "Blue circles: the team's best group; grey squares: cut off; crossed: blinded; "
+    key += "pale sectors: fields of view, only the rims of wide ones; " if frames and frames[0]["fields"] else ""
     key += f"lines: links, dashed: cut ones (at most {MOST_LINKS} of a kind are drawn); "
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'

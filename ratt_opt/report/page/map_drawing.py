@@ -124,6 +124,11 @@ def _frame(picture: Picture, size: tuple[float, float]) -> _Frame:
         prior = picture.prior if picture.prior is not None else np.zeros((len(picture.targets), 2, 2))
         half = SIGMAS * np.sqrt(np.diagonal(prior, axis1=1, axis2=2))
         points += [picture.targets - half, picture.targets + half]
+    across = float(np.linalg.norm(np.ptp(np.vstack(points), axis=0)))
+    reaches = [field_of(picture, i)[2] for i in range(len(picture.places))] if picture.views is not None else []
+    for place, reach in zip(picture.places, reaches, strict=False):
+        if reach <= across:  # the map holds it whole; wider ones would shrink all else
+            points += [place[None] - reach, place[None] + reach]
     return _Frame(np.vstack(points), size)
 
 
@@ -133,6 +138,7 @@ def _fields(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> I
         heading, angle, reach = field_of(picture, i)
         kind = "blinded" if i in picture.attack.sensing else "seeing" if i in picture.best else "lost"
         r = reach * place.scale
+        kind += " wide" if angle > np.pi else ""  # it would flood the map: only its rim is drawn
         if angle >= 2 * np.pi:
             yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r:.1f}" class="field {kind}"/>'
             continue

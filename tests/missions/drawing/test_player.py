@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.missions.drawing.frames import MOST_LINKS, frames_of
+from ratt_opt.missions.drawing.frames import MOST_LINKS, frames_of, limits
 from tests.report.browser import opened
 
 
@@ -90,3 +90,27 @@ def test_it_plays_and_pauses(browser) -> None:
     WebDriverWait(browser, 10).until(lambda page: not page.find_element("id", "text").text.startswith("Step 1 "))
     button.click()
     assert button.text == "Play"
+
+
+@pytest.mark.parametrize("view", [60, 360])
+def test_fields_of_view_are_inside_the_picture_and_wide_ones_are_rims(view: int, tmp_path) -> None:
+    team = ro.limited_view_scenario(4, 3, alpha_s=1, alpha_c=2, seed=2, view=view, reach=20)
+    flown = ro.run_mission(team, steps=2)
+    frames = frames_of(flown)
+    x0, x1, y0, y1 = limits(frames)
+    for frame in frames:
+        assert frame["fields"] == [[pytest.approx(np.radians(view)), 20.0]] * 4
+        for x, y, _ in frame["robots"]:
+            assert x0 <= x - 20
+            assert x + 20 <= x1
+            assert y0 <= y - 20
+            assert y + 20 <= y1
+    fills = []
+    with opened(flown.animate(tmp_path / "player.html"), tmp_path / "profile") as page:
+        pixels = show(page, 0)
+        fills.append(float(((pixels[..., 3] > 0) & (pixels[..., 2] > pixels[..., 0])).mean()))  # bluish
+    assert (fills[0] > 0.03) is (view == 60), fills
+
+
+def test_without_limits_there_are_no_fields(mission) -> None:
+    assert all(frame["fields"] == [] for frame in frames_of(mission))

@@ -153,3 +153,21 @@ def test_names_from_files_are_text_not_markup(saved):
     assert nasty not in page
     assert "&lt;script&gt;" in page
     assert report_page(replace(saved[0], source=None)).count("<figure") == 3
+
+
+@pytest.mark.parametrize("view", [60, 200, 360])
+def test_fields_of_view_are_whole_and_do_not_flood_the_map(view, tmp_path):
+    """Every sector lies within the drawing, and only the rim of one wider than half a turn is drawn."""
+    team = ro.limited_view_scenario(4, 3, alpha_s=1, alpha_c=2, seed=2, view=view, reach=20)
+    ro.bound(team, guarantees="none", time_limit=5).save(tmp_path)
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    fields = re.findall(r'<(circle|path) ([^>]*)class="field (\w+)( wide)?"', text)
+    assert len(fields) >= 2 * 4
+    assert all(bool(wide) is (view > 180) for *_, wide in fields)
+    assert ".field.wide{fill:none}" in text
+    for kind, where, *_ in fields:
+        numbers = [float(x) for x in re.findall(r"-?\d+\.\d", where)]
+        x, y = numbers[:2]
+        r = numbers[2] if kind == "circle" else float(re.search(r"A([\d.]+)", where)[1])
+        inside = [size for size in ((800, 560), (390, 460)) if r <= x <= size[0] - r and r <= y <= size[1] - r]
+        assert inside, where
