@@ -1,9 +1,9 @@
 """Interrupts at random moments inside each long search: each comes back soon, with a bracket.
 
-Run as ``python -m analysis.faults.moments [--moments 100] [--seed 1] [--searches NAME ...]``. A thread interrupts the
-main one (Ctrl-C) once the search has used a random number of seconds of the processor. For each search it prints
-how it came back, and the longest time from the interrupt to its return, in seconds of the processor. The exit code is
-1 if one raised, came back as if nothing had been, without a bracket, or later than ``--within``.
+Run as ``python -m analysis.faults.moments [--moments 100] [--seed 1] [--seconds 60] [--searches NAME ...]``. A
+thread interrupts the main one (Ctrl-C) once the search has used a random number of seconds of the processor. For each
+search it prints how it came back, and the longest time from the interrupt to its return, in seconds of the processor.
+The exit code is 1 if one raised, came back as if nothing had been, without a bracket, or later than ``--within``.
 """
 
 from __future__ import annotations
@@ -183,12 +183,17 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the moments (default %(default)s)")
     parser.add_argument("--within", type=float, default=0.3, help="seconds of the processor (default %(default)s)")
     parser.add_argument("--most", type=float, default=2.0, help="the latest moment, in seconds (default %(default)s)")
+    parser.add_argument("--seconds", type=float, default=np.inf, help="of the processor for each search: fewer moments")
     parser.add_argument("--searches", nargs="+", choices=list(searches()), default=list(searches()))
     options = parser.parse_args()
     rng, is_fine = np.random.default_rng(options.seed), True
     for name in options.searches:
         interrupted_after(searches()[name], options.most)  # loads what is imported when it is first needed
-        moments = [interrupted_after(searches()[name], t) for t in rng.uniform(0, options.most, options.moments)]
+        until, moments = process_time() + options.seconds, []
+        for delay in rng.uniform(0, options.most, options.moments):
+            moments.append(interrupted_after(searches()[name], delay))
+            if process_time() > until:
+                break
         late = max((m.seconds for m in moments if m.seconds is not None), default=0.0)
         wrong = Counter(m.raised or "no bracket" for m in moments if not is_answered(m))
         before = sum(m.seconds is None for m in moments)

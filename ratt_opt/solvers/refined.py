@@ -56,17 +56,20 @@ PATIENCE = 200
 class RefinedParams:
     """Time for the last exact attacks, beyond the limit: more proves more of the plan, and overruns it by more.
 
-    ``last_share`` : of the limit [1]; ``last_seconds`` : at least, and after an interrupt [s]; ``least_share`` : but no
-    more than this share of a short limit [1]
+    ``last_share`` : of the limit [1]; ``last_seconds`` : at least [s]; ``least_share`` : but no more than this share
+    of a short limit [1]; ``interrupted_seconds`` : after an interrupt instead [s]: a user waits for it
     """
 
     last_share: float = 0.08
     last_seconds: float = 0.4
     least_share: float = 0.5
+    interrupted_seconds: float = 0.1
 
     def last(self, own: Budget) -> float:
         """Seconds for the last attacks of a search with this budget."""
-        if own.is_interrupted or own.time_limit is None:
+        if own.is_interrupted:
+            return self.interrupted_seconds
+        if own.time_limit is None:
             return self.last_seconds
         return max(self.last_share * own.time_limit, min(self.last_seconds, self.least_share * own.time_limit))
 
