@@ -1,4 +1,4 @@
-"""Is the attack that minimises the largest group also the worst attack? And how good are simple attackers?
+"""Test of CAA's conjecture that minimising the largest group is the worst attack, and quality of simple attackers.
 
 CAA conjectures that it is. This study compares the exact worst case of RATT's plan with the best attack among those
 that leave no group larger than ``n_max`` (up to ten robots), and with the bounded-rational, greedy and random

@@ -1,4 +1,4 @@
-"""Is CAA's n_max right? Against three other ways on complete graphs, and how far off it is elsewhere.
+"""Validation of CAA's n_max: against three other ways on complete graphs, and its error elsewhere.
 
 Run as ``python -m analysis.caa_validation --out DIR [--largest N]``.
 """

@@ -38,7 +38,8 @@ SENTENCE = re.compile(r"(?<=[.!?])\s+(?=[A-Zx(*\"\[])|(?<=[;:])\s+|\n\s*\n|\n\s*
 """End of a sentence. A colon and a semicolon end one, too, and so does the field of a record or parameter."""
 FRAGMENT = re.compile(
     "(What|Of|The same|Those|How|So many|So few|Whose|Whom|Which|Where|Whether|As|That|There|Nothing|Nobody|Another"
-    r"|Only|But|And|No more|One more|To|From|In|By|At|For|With)\b"
+    "|Only|But|And|No more|One more|To|From|In|By|At|For|With|Is|Does|Why|Who|When|If|Whatever|It|Its|These|Without"
+    r"|Within|Between|Beside|Above|Beyond|Around|Over|Inside|After|Up|Too|Everybody|Far|Nearer)\b"
 )
 """The beginning of a docstring's first line that is no imperative and no noun phrase."""
 COMMENT = re.compile(r"# (What|Of|The same|Those|How|So many|So few|Whose|Whom)\b")

@@ -14,7 +14,7 @@ from fractions import Fraction
 __all__ = ["bracket_text", "down", "gap_text", "named_text", "relative_gap", "up"]
 
 AND_SO_ON = "\N{HORIZONTAL ELLIPSIS}"
-"""After digits that are certain: more follow."""
+"""Mark after the certain digits of a number: more follow."""
 AT_LEAST, AT_MOST = {"lower", "proved", "share", "guarantee"}, {"upper", "gap"}
 """Last words of the names of numbers that are to be read so."""
 

@@ -38,7 +38,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 LARGEST_EXACT = 2**53
-"""Up to this size a float that is an integer is the one that was meant: beyond it, integers are rounded."""
+"""Largest integer up to which floats are exact; beyond it, integers are rounded."""
 
 
 def readonly(array: NDArray[Any]) -> NDArray[Any]:

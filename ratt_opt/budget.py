@@ -102,7 +102,7 @@ class Budget:
         max_nodes: int | None = None,
         max_evaluations: int | None = None,
     ) -> Budget:
-        """These limits, and the seconds, evaluations and interrupts of ``outer`` if one is given.
+        """Return a budget with these limits, within the seconds, evaluations and interrupts of ``outer`` if given.
 
         Raises
         ------
@@ -134,7 +134,7 @@ class Budget:
         return inf if self.time_limit is None else max(self.time_limit - self.elapsed, 0.0)
 
     def stop(self) -> Stop | None:
-        """Why to stop now, if at all."""
+        """Return the reason to stop now, if there is one."""
         if self._interrupt.happened:
             return Stop.INTERRUPTED
         if self.time_limit is not None and self.elapsed >= self.time_limit:

@@ -69,7 +69,7 @@ class Plan(ByValue, ReprMixin):
         return iter(self.elements.tolist())
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        """Its elements: functions that take elements take a plan, too."""
+        """Return the plan's elements: functions that take elements take a plan, too."""
         return np.array(self.elements, dtype=dtype, copy=copy)
 
 

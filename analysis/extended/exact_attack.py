@@ -30,7 +30,7 @@ STUDY = replace(
 
 
 def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
-    """Above: trace under the exact attack. Below: how far that is, at most, above the best possible, per cent."""
+    """Draw the trace under the exact attack (above) and its largest excess over the best in per cent (below)."""
     figure = new_figure(11, 6.2)
     planners = players(rows, "trace")["worst"]
     axes = figure.subplots(2, len(SIZES), sharey="row")

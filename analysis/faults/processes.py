@@ -33,7 +33,7 @@ cli.run = told
 cli.main()
 """
 PROGRAM = [sys.executable, "-c", _TELLING]
-"""Tells by an empty line when the program's own guards stand: before, an interrupt is Python's to show."""
+"""Program that prints an empty line once its guards stand: before, Python itself shows an interrupt."""
 SWEEP_PROGRAM = [sys.executable, "-c", "import sys; from analysis.faults.processes import sweep; sys.exit(sweep())"]
 TRIALS = 20
 

@@ -1,4 +1,4 @@
-"""Is it worth it? One figure and three sentences: ``python -m analysis.limited_views.worth --trials 24 --out DIR``.
+"""Worth of robust planning, in a figure and three sentences: ``python -m analysis.limited_views.worth --out DIR``.
 
 Error under the worst attack against that of greedy plans, over the field of view and the network. The command writes
 ``limited_views.md`` and ``limited_views.png`` into the folder of the results; every number comes from the rows.

@@ -1,4 +1,4 @@
-"""Does the filter's covariance tell its error? One step at the paper's nine large cases, by how it is linearised.
+"""Consistency of the filter's covariance: one step at the paper's nine large cases, for each linearisation.
 
 ``python -m analysis.missions.consistency --trials 40 --out DIR``
 """

@@ -23,7 +23,7 @@ from ratt_opt.studies.statistics import estimate
 
 STEPS = 30
 APART = 60.0
-"""Between the starts of two trials [s]."""
+"""Time between the starts of two trials [s]."""
 DRIFTS = (0.0, 0.005, 0.01, 0.02, 0.03, 0.05, 0.08)
 """Standard deviations to choose from, by which landmarks are taken to move in a step [m]."""
 

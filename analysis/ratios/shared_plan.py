@@ -1,4 +1,4 @@
-"""Is there a better planner? One plan that RATT, the myopic planner and Greedy all return, and that no exchange mends.
+"""Bound on better planners: one plan that RATT, the myopic planner and Greedy all return, and no exchange improves.
 
 The best of several planners has at least RATT's worst ratio, and no more than the ratio of any instance on which all
 of them return the same plan. The smallest such ratio is the optimum of RATT's own program with more comparisons; if

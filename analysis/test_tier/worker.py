@@ -29,7 +29,7 @@ LEAST = 5.0
 
 
 class Chosen:
-    """Keeps the chosen functions, in the given order, and ends the process if one takes too long."""
+    """Plug-in that keeps the chosen functions, in the given order, and ends the process if one takes too long."""
 
     def __init__(self, limits: dict[str, float], cases: dict[str, int], note: TextIO) -> None:
         self._left = dict(limits)

@@ -1,4 +1,4 @@
-"""Who is who in the proof: bait and greedy robots, what they chose, what follows, and which factor a group keeps.
+"""Roles in the proof: bait and greedy robots, their choices, the premises, and the factor that a group has.
 
 Elements: ``b1`` is bait robot 1's choice, ``g1`` greedy robot 1's (in greedy order), ``o(b1)``
 and ``o(g1)`` the compared (optimal) plan's for the same robot, ``h(g1)`` the individually best
@@ -139,7 +139,7 @@ class Team:
 
     @property
     def premises(self) -> tuple[Inequality, ...]:
-        """Everything RATT's choices guarantee."""
+        """Premises that RATT's choices guarantee."""
         return self.bait_premises() + self.greedy_premises()
 
     def claim(

@@ -148,7 +148,7 @@ class Claim:
 
     @property
     def expressions(self) -> tuple[Linear, ...]:
-        """Everything the claim speaks of, premises first."""
+        """Expressions of the claim, premises first."""
         return (*(premise.expression for premise in self.premises), self.conclusion)
 
     @property

@@ -49,7 +49,7 @@ def can_enumerate_subsets(task: AttackTask) -> bool:
 
 
 class AllSets:
-    """Narrows the bracket by thresholds; goes on where it ended.
+    """Resumable search that narrows the bracket by thresholds over all sets.
 
     The search looks for an attack below the best one known. If there is none, the bracket is closed; if that is left
     open, lower thresholds raise the lower end first.

@@ -1,4 +1,4 @@
-"""Is there an attack worth less than a threshold? By dual prices, pricing, and exact covers.
+"""Decision of a threshold for an attack on any network: dual prices, pricing, and exact covers.
 
 1. A linear program over known groups suggests dual prices of robots and of blinded ones (``master.py``).
 2. If they claim more links than the budget, they refute the threshold once no group has a negative reduced cost
@@ -36,7 +36,7 @@ HALF = 2 * UNIT
 
 
 class ThresholdDecision:
-    """Decides thresholds for one plan; what is learned about groups serves the next threshold."""
+    """Decision of thresholds for one plan; groups found for one threshold serve the next."""
 
     def __init__(self, plan: PricingProblem) -> None:
         self._plan, self._links, self.threat = plan, plan.links, plan.threat

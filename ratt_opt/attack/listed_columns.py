@@ -38,7 +38,7 @@ __all__ = ["ListedColumns", "ListedSearch"]
 
 
 class ListedSearch:
-    """Closes the task's bracket; relies on a non-decreasing objective. It goes on where it ended.
+    """Resumable search by listed columns; relies on a non-decreasing objective.
 
     ``groups`` : all that an attack may leave
     """

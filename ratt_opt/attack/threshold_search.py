@@ -43,7 +43,7 @@ class Answer:
 
 
 class Decision(Protocol):
-    """Decides thresholds for one plan."""
+    """Decision of thresholds for one plan."""
 
     @property
     def least(self) -> float:
@@ -60,7 +60,7 @@ class Decision(Protocol):
 
 
 class ThresholdSearch:
-    """Closes the task's bracket for criteria with compiled code; relies on a non-decreasing objective.
+    """Search by thresholds that closes the task's bracket; relies on compiled code and a non-decreasing objective.
 
     A node is a node of an enumeration.
 

@@ -38,7 +38,7 @@ class _AttackNode(NamedTuple):
 
 
 class AttackTree:
-    """Narrows the task's bracket; valid whenever it stops, and from there it can go on."""
+    """Resumable branch and bound over attacks; the task's bracket is valid whenever it stops."""
 
     def __init__(self, task: AttackTask) -> None:
         self.task = task

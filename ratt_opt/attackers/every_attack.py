@@ -27,7 +27,7 @@ __all__ = ["EveryAttack"]
 
 
 class EveryAttack:
-    """Tries every attack that uses the whole budgets; relies on a non-decreasing objective, which criteria are."""
+    """Enumeration of every attack that uses the whole budgets; relies on a non-decreasing objective."""
 
     def __init__(self, task: AttackTask) -> None:
         self._task, self._threat = task, task.problem.threat
@@ -38,7 +38,7 @@ class EveryAttack:
 
     @property
     def seconds(self) -> float:
-        """About how long trying all takes: every partition, and for each the largest group under all blinded sets.
+        """Estimated seconds of trying all: every partition, and for each the largest group under all blinded sets.
 
         Most attacks leave more than the one in hand already there; the other groups are valued for the rest.
         """

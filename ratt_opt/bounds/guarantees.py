@@ -80,7 +80,7 @@ IN_COQ = {"k": "ratt_submodular", "c": "ratt_non_decreasing"}
 
 
 def _by_pattern_free(kind: str) -> str:
-    """If bounds are proved that are no larger than the pattern-free ones."""
+    """Name the proofs of a bound that is no larger than the pattern-free one."""
     return f"pattern_free_bound; in Coq {IN_COQ[kind]}"
 
 

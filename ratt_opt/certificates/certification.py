@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["CERTIFICATE", "INTERRUPTED", "NOT_ASKED_FOR", "PENDING", "Certificate", "Certification"]
 
 CERTIFICATE = "certificate.json"
-"""Its name in a report's folder."""
+"""Name of a certificate in a report's folder."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,7 +25,7 @@ __all__ = ["GroupTree", "group_tree", "sets_proof"]
 Limit = tuple[int, int]
 """A set of robots (bit mask), and the most of these that sense in a group below the threshold."""
 CASES = 100
-"""Between two looks at the clock: some hundredths of a second."""
+"""Cases between two looks at the clock: some hundredths of a second."""
 CRITERIA, MOST_CRITERIA = 4_000_000, 256_000_000
 """Criteria of single targets for a tree over sets: between two looks at the clock, a tenth of a second; and at most."""
 MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 12_000, 20_000, 1_000_000

@@ -36,7 +36,7 @@ a tenth of the time; sizes leave eight open, and the others have shorter proofs 
 LOWERED = (0.01, 0.03, 0.1, 0.3)
 """Shares of a threshold by which it is lowered, in turn, until it is proved."""
 ENUMERATED: dict[str, Any] = {"conclusion": "enumerated"}
-"""Says that the outcomes were enumerated in floating point: not a proof."""
+"""Record that the outcomes were enumerated in floating point: not a proof."""
 
 
 def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE) -> Any:

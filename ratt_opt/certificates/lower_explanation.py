@@ -47,7 +47,7 @@ CONCLUSIONS = {
 
 
 class LowerStory:
-    """Tells one lower proof; cases, worths and costs are computed by the verifier's classes."""
+    """Explanation of one lower proof; cases, worths and costs are computed by the verifier's classes."""
 
     def __init__(self, about: Statement, lower: fmpq) -> None:
         self.about, self.worth = about, Worth(about, lower)

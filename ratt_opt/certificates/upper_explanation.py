@@ -43,7 +43,7 @@ def upper_story(about: Statement, part: Mapping[str, Any]) -> list[str]:
 
 
 class _Story(UpperCheck):
-    """Reads the proof as the verifier does and notes a line at each node."""
+    """Reader of the proof, as the verifier reads it, that notes a line at each node."""
 
     def __init__(self, about: Statement, part: Mapping[str, Any]) -> None:
         self.lines: list[str] = []

@@ -65,7 +65,7 @@ def _hold_streams() -> None:
 
 
 def _draw_into_files() -> None:
-    """Whatever windows other programs draw into; not a word on fonts that lack a letter or cannot be kept."""
+    """Draw into files, not windows, without warnings about fonts that lack a letter or cannot be cached."""
     import logging
     import warnings
 

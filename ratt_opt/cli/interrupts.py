@@ -21,7 +21,7 @@ again, until it is met: one that comes just before the program waits for somethi
 
 
 class Interrupts:
-    """Raises ``KeyboardInterrupt`` as Python does, and remembers that it did; ``happened`` : whether there was one.
+    """Handler that raises ``KeyboardInterrupt`` as Python does, and remembers it; ``happened`` : whether there was one.
 
     One that Python drops, because it came inside a destructor or callback, comes again after it. What an
     interrupt leaves half done may fail when it is collected; that says nothing and is not shown.

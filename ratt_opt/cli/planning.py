@@ -35,7 +35,7 @@ PAPER_SEED = 14
 EARLIER = "certificate.earlier.json"
 """The certificate of an earlier report in the folder when a later one has none."""
 NOT_DRAWN = "without plan.png and plan.svg, which the same command draws once it ends; report.html has the map"
-"""After an interrupt: drawing takes a second or two, most of them to load what draws."""
+"""Message after an interrupt: drawing takes a second or two, mostly to load the drawing library."""
 
 
 def demo(

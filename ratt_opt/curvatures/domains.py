@@ -1,4 +1,4 @@
-"""Over which sets the marginals of a curvature range, and the values of all of them."""
+"""Domains of a curvature: the sets over which its marginals range, and their values."""
 
 from __future__ import annotations
 

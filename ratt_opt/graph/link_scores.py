@@ -139,7 +139,7 @@ class MostScores:
 def scoring_group(
     graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget
 ) -> BoolArray | None:
-    """These robots (N,) and ``joining`` others that score so much (K,); ``None`` if it is proved that none do.
+    """Find these robots (N,) and ``joining`` others that score enough (K,); ``None`` if it is proved that none do.
 
     Others are taken or left one by one, a node each in ``budget``; after ``NODES`` of them ``members`` are returned,
     and nothing is known.

@@ -70,7 +70,7 @@ class _Level:
 
 
 class ThresholdTest:
-    """Decides for one plan whether an attack can push the team value to a threshold.
+    """Test whether an attack on one plan can push the team value to a threshold.
 
     ``threat`` : N robots, at most ``LARGEST_LATTICE``; ``values`` : (2**N,) value of every set of robots, by bit mask;
     ``largest_group`` : consider only attacks whose groups, blinded robots included, have at most this many robots

@@ -96,7 +96,7 @@ class Belief(ByValue, ReprMixin):
         return Belief(readonly(motion.predict(self.mean, period, time)), readonly(covariance))
 
     def updated(self, information: FloatArray, vector: FloatArray) -> Belief:
-        """After measurements worth ``information`` (M, d, d) = sum of H'R^-1 H, ``vector`` (M, d) = sum of H'R^-1 z.
+        """Update by measurements: ``information`` (M, d, d) = sum of H'R^-1 H, ``vector`` (M, d) = sum of H'R^-1 z.
 
         ``z`` is a measurement as linear in the state: the surprise plus ``H`` times the state it was linearised at.
         Sums of both may be taken in any order and at any time: that is the Kalman filter's update.

@@ -1,4 +1,4 @@
-"""Who knows which measurements, and what follows from them: beliefs of groups that split and meet again.
+"""Memory of the measurements that each robot holds, and beliefs of groups that split and meet again.
 
 A measurement becomes information about the state at its step (``H'R^-1 H`` and ``H'R^-1 z``), which adds up. Every
 robot keeps the pieces that it made or was told since the last step of which all robots know everything. A group's

@@ -24,7 +24,7 @@ __all__ = ["Reading", "group_pieces", "innovations_squared", "simulated_readings
 ROUNDS = 4
 """Linearisations of an iterated update; on the paper's settings the estimate no longer moves visibly after three."""
 ON_TOP = 1e-9
-"""Nearer to a robot than this [m] a measurement has no derivative: it is linearised at the point that it names."""
+"""Distance [m] below which a measurement has no derivative: it is linearised at the point that it names."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,4 +1,4 @@
-"""Who and what the numbers of a problem stand for: names, labels, places, as far as its source tells."""
+"""Meaning of the numbers of a problem: names, labels, places, as far as its source has them."""
 
 from __future__ import annotations
 

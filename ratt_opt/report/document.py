@@ -163,7 +163,7 @@ def _input(source: object) -> dict[str, Any] | None:
 
 
 def _cast(report: Findings) -> dict[str, Any]:
-    """Who and what the indices stand for: robots, targets, elements, links."""
+    """Meaning of the indices: robots, targets, elements, links."""
     problem, known = report.problem, describe(report.problem, report.source)
     return {
         "robot_names": list(known.robot_names),

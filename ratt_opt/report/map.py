@@ -20,7 +20,7 @@ __all__ = ["MANY_ROBOTS", "draw_map", "name_things"]
 SIGMAS = 2.4477
 """Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
 MANY_LINKS = 60
-"""Above this many links of a kind they are drawn fainter."""
+"""Number of links of a kind above which they are drawn fainter."""
 MANY_ROBOTS = 20
 """Number of robots from which only the best group and attacked robots are drawn one by one, the rest as a density."""
 SPARSE, MOST_DRAWN = 4, 60

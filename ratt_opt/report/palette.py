@@ -27,7 +27,7 @@ __all__ = [
 ]
 
 LEAST_COLOUR_DISTANCE = 20.0
-"""About nine times what is just noticeable."""
+"""Least distance of two colours of a figure: about nine times a just noticeable one."""
 LEAST_GREY_DISTANCE = 10.0
 """Lightness steps (of 100) between any two colours of one figure on a grey print."""
 

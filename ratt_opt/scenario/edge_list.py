@@ -55,7 +55,7 @@ class _Line:
 
 @dataclass(frozen=True, slots=True)
 class _Doubt:
-    """Why the line with this number may be no edge."""
+    """Reason why the line with this number may be no edge."""
 
     number: int
     rule: str

@@ -117,7 +117,7 @@ class InformationInput(ProblemRecord):
 
     @model_serializer(mode="wrap")
     def _as_before(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without later fields that hold nothing: files and their SHA-256 are as they were before these came."""
+        """Drop later fields that hold nothing, so that files and their SHA-256 stay as they were before these came."""
         document: dict[str, Any] = whole(self)
         return {name: value for name, value in document.items() if value is not None or name not in LATER}
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["MrclamData", "opened_mrclam", "read_mrclam"]
 
 LARGEST_IDENTIFIER = 10**9
-"""Far above any subject or barcode, and exact as a float."""
+"""Largest identifier: far above any subject or barcode, and exact as a float."""
 
 _POSE_FILES = ("Robot{}_Groundtruth.dat", "Robot{}_Pose_estimated.dat")
 """Pose files in order of preference: the dataset's own ground truth, then poses estimated from its measurements."""

@@ -19,7 +19,7 @@ __all__ = ["PlausibleNumbers", "scenario_remarks"]
 
 @dataclass(frozen=True, slots=True)
 class PlausibleNumbers:
-    """Beyond what a number is remarked on; wider limits remark less, and miss more mistakes.
+    """Limits beyond which a number is remarked on; wider limits remark less, and miss more mistakes.
 
     ``angle`` : size of a heading [rad]; ``turn_rate`` [rad/s]; ``extent`` : of all places over a target's standard
     deviation; ``degrees`` : extent of places below which they may be degrees.

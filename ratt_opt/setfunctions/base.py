@@ -113,7 +113,7 @@ def check_total(argument: str, terms: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImprovementParams:
-    """When one value is better than another.
+    """Parameters of the comparison of two values.
 
     ``relative`` : share of a value [1] that an improvement must exceed: more ends exchanges sooner and a little
     worse, less lets them follow the rounding of long sums

@@ -142,7 +142,7 @@ class CriterionParts(ProofParts):
     """Name in files, tables and on the command line; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
     compiled_code: ClassVar[int | None] = None
-    """Its number in the compiled loops (``native/src/team.h``), if it is there."""
+    """Number of the criterion in the compiled code (``native/src/team.h``), if it is there."""
 
     is_least_of_targets: ClassVar[bool] = False
     """True if the value is that of the target where it is least, as with the worst target's criterion."""

@@ -45,7 +45,7 @@ DEEPEST = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SignParams:
-    """When a small eigenvalue counts as negative, or as positive.
+    """Limits from which a small eigenvalue counts as negative, or as positive.
 
     Negative ones within ``rounded`` or ``slight`` stay as they are, and every published end accounts for them; those
     beyond both are set to 0. Larger limits change fewer of the given matrices, and leave ends further apart.

@@ -55,7 +55,7 @@ SECONDS = 60.0
 
 @dataclass(frozen=True, slots=True)
 class _Question:
-    """Does ``f`` keep a rule within a tolerance? ``trials``, ``seed`` : of the sampled search."""
+    """Question whether ``f`` keeps a rule within a tolerance; ``trials``, ``seed`` : of the sampled search."""
 
     f: SetFunction
     rule: str

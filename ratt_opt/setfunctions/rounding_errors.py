@@ -31,7 +31,7 @@ MORE = 1 + 1e-12
 SPLIT = 2.0**27 + 1
 """Factor that splits a float64 into halves whose products are exact (Dekker 1971)."""
 SMALL = 2.0**-480
-"""Beside 1, squares of numbers below this may lose digits to underflow: a square has 106 bits, so its last digit is at
+"""Size of a number, beside 1, below which its square may lose digits to underflow: its last digit of 106 bits is at
 least ``2^(2 * -480 - 106) = 2^-1066``, and float64 goes down to ``2^-1074``."""
 
 

@@ -79,7 +79,7 @@ def _coverage(n: int, rng: np.random.Generator) -> Reference:
 
 
 def _planted_coverage(n: int, rng: np.random.Generator) -> Reference:
-    """Everybody covers one common item; private ones make up the rest, so the curvature is chosen freely."""
+    """Make a coverage function of one common item and private ones, so that the curvature can be chosen freely."""
     k = float(rng.integers(0, 9)) / 8
     covers = np.concatenate([np.eye(n, dtype=np.bool_), np.ones((n, 1), dtype=np.bool_)], axis=1)
     weights = np.append(np.full(n, 1 - k), k)

@@ -67,7 +67,7 @@ class MaxMinResult(ByValue, ReprMixin):
     ``None`` if plans were enumerated, and for set functions that are no information criterion."""
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
-        """Its plan: functions that take elements take a result, too."""
+        """Return the elements of the plan: functions that take elements take a result, too."""
         return np.array(self.elements, dtype=dtype, copy=copy)
 
     def widen_by_rounding(self, problem: Problem) -> Self:

@@ -124,7 +124,7 @@ class _RatioNode:
 
 
 class RatioSearch:
-    """Closes the bracket of one worst-case ratio.
+    """Search that closes the bracket of one worst-case ratio.
 
     ``accept`` checks a table of integers and returns the exact ratio that it attains, or raises ``ProofError``;
     ``floor`` is a proved lower bound on the ratio.

@@ -94,7 +94,7 @@ class SetNode:
 
 
 class LeastSetSearch:
-    """Decides for every set of ``size`` robots whether it is worth less than ``threshold``.
+    """Search that decides for every set of ``size`` robots whether it is worth less than ``threshold``.
 
     The caller may lower ``threshold`` at every step of :meth:`run`; sets between are then passed over.
 

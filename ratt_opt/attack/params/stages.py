@@ -41,7 +41,7 @@ class StageParams:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CriterionParams:
-    """When the stages of an attack on a criterion apply.
+    """Conditions of the stages of an attack on a criterion.
 
     ``dense`` : share of all links from which sizes say more than dual prices
     ``small`` : robots for which all sets are looked at before anything else
@@ -59,7 +59,7 @@ class CriterionParams:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EveryAttackParams:
-    """When all attacks are tried.
+    """Conditions under which all attacks are enumerated.
 
     ``share`` : of the time left that it is expected to take at most; a larger one closes more attacks by it, and
     leaves less time for other stages if it is misjudged

@@ -1,4 +1,4 @@
-"""Is there an attack on a complete graph that leaves less than a threshold? By vectors of group sizes.
+"""Decision of a threshold for an attack on a complete graph, by vectors of group sizes.
 
 Some group of an attack is the largest. For each size that it may have, smallest first, all sets below the threshold are
 found. If there is none, larger groups have none either. If there are few, the other groups are packed among the robots
@@ -45,7 +45,7 @@ class _Sets:
 
 
 class SizeDecision:
-    """Decides thresholds for one plan."""
+    """Decision of thresholds for one plan."""
 
     def __init__(self, team: Team, threat: Threat, vectors: Sequence[Sizes]) -> None:
         self._team, self._threat, self._vectors = team, threat, vectors
@@ -161,7 +161,7 @@ class Packing:
 
 @dataclass(slots=True)
 class Packer:
-    """Packs groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
+    """Packing of groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
 
     team: Team
     must: frozenset[int]

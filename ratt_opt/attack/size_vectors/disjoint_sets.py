@@ -169,7 +169,7 @@ class Rest:
 
 
 class DisjointSets:
-    """Finds the sets whose largest value is least; :meth:`run` goes on until all families are decided.
+    """Search for the disjoint sets whose largest value is least; :meth:`run` continues until all families are decided.
 
     Parameters
     ----------

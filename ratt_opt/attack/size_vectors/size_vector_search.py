@@ -49,7 +49,7 @@ If there are more, some make attacks, and the bound is that of the forced size."
 
 
 class SizeVectorSearch:
-    """Closes the task's bracket; relies on a non-decreasing objective.
+    """Search by size vectors that closes the task's bracket; relies on a non-decreasing objective.
 
     ``vectors`` : size vectors to search; those that the budgets allow by default
     """
@@ -79,11 +79,11 @@ class SizeVectorSearch:
     # -- what the stages ask -------------------------------------------------------------------------------------
 
     def blinds_everyone(self) -> bool:
-        """Everybody may be blinded."""
+        """All robots may be blinded."""
         return self.vectors == [()]
 
     def has_many_vectors(self) -> bool:
-        """Too many vectors of sizes."""
+        """Size vectors too many for a list of all."""
         return not self.has_all_vectors
 
     def is_limited(self) -> bool:
@@ -152,7 +152,7 @@ class SizeVectorSearch:
 
     @cached_property
     def _prices(self) -> ThresholdSearch:
-        """Made when asked for: half a second for a thousand robots."""
+        """Search by dual prices, made on first use: half a second for a thousand robots."""
         return ThresholdSearch(self.task, self._plan, ThresholdDecision(self._plan))
 
     def dual_prices(self) -> None:

@@ -25,7 +25,7 @@ __all__ = ["GroupExchanges", "WeakFamilies", "weakest_of"]
 
 
 class WeakFamilies:
-    """Finds families that no exchange makes weaker."""
+    """Search for families that no exchange makes weaker."""
 
     def __init__(self, task: AttackTask, team: Team) -> None:
         self._team, self._budget = team, task.budget

@@ -147,7 +147,7 @@ def links_to_add(
 
 
 class _LinkSearch:
-    """Chooses links against the known attacks, and attacks the team that has them, in turn."""
+    """Search that chooses links against the known attacks, and attacks the team that has them, in turn."""
 
     def __init__(self, upgrade: Upgrade, elements: ArrayLike, k: int, max_nodes: int | None, budget: Budget) -> None:
         self.upgrade, self.budget, self.max_nodes = upgrade, budget, max_nodes

@@ -34,7 +34,7 @@ AT_ONCE = 64
 
 @dataclass(frozen=True, slots=True, order=True)
 class KnownAttack:
-    """Leaves at most ``value``, unless ``need`` or more of the candidates in the bit mask ``links`` are chosen."""
+    """Attack of at most ``value``, unless ``need`` or more of the candidates in the bit mask ``links`` are chosen."""
 
     value: float
     links: int

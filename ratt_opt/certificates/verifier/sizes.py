@@ -144,7 +144,7 @@ class LinkCosts:
         return is_positive(written.transpose() * form * written)
 
     def _form(self, room: int, diagonal: list[int], inside: int, others: list[int]) -> fmpz_mat:
-        """Twice the form, in units."""
+        """Build twice the form, in units."""
         form = fmpz_mat(len(others) + 1, len(others) + 1)
         form[0, 0] = 2 * UNIT * room
         for a, i in enumerate(others, 1):

@@ -34,7 +34,7 @@ Known = list[int]
 
 
 class Worth:
-    """Decides whether robots S that see and are known to be in one group are worth ``lower``.
+    """Exact test whether unblinded robots S that are known to be in one group are worth ``lower``.
 
     The group's L is at least L(S) minus the plan's defects, in the Loewner order, so the group is worth at least the
     criterion there. ``nobody`` : the set without robots, as :meth:`plus` extends it

@@ -129,7 +129,7 @@ class TreeProgram:
         return self.best
 
     def _evenly(self) -> FloatArray:
-        """Both budgets spread over all that can be attacked."""
+        """Spread both budgets evenly over all that can be attacked."""
         parts = np.split(self.free.astype(np.float64), [self.n_links])
         return np.concatenate(
             [part * min(b / max(part.sum(), 1.0), 1.0) for part, b in zip(parts, self.budgets, strict=True)]

@@ -1,4 +1,4 @@
-"""Who can talk to whom: a networkx graph of platforms and sensors, or edges of Stone Soup's network classes.
+"""Communication network: a networkx graph of platforms and sensors, or edges of Stone Soup's network classes.
 
 Stone Soup's own architectures are for networks without failures: an edge that ``failed()`` still delivers,
 ``propagate(failed_edges=)`` changes nothing, a removed edge only delays its messages, and information architectures do

@@ -1,4 +1,4 @@
-"""Who takes part, in an order that lasts, and what each can do.
+"""Nodes that take part, in a fixed order, and their options.
 
 Stone Soup keeps platforms, sensors, generators of actions and tracks in sets, whose order changes from run to run;
 platforms' names are random. So everything is ordered by its attributes.
@@ -94,7 +94,7 @@ class TeamManager(SensorManager):
 
     @property
     def nodes(self) -> tuple[Node, ...]:
-        """Who can be blinded, in order: platforms with their sensors, then sensors that stand alone."""
+        """Nodes that can be blinded, in order: platforms with their sensors, then sensors that stand alone."""
         return nodes_of(self.platforms, self.sensors)
 
 
@@ -130,7 +130,7 @@ def _description(actionable: Any) -> tuple[Any, ...]:
 
 
 def _numbers(owner: Any) -> str:
-    """Its attributes that are numbers, arrays or text, without its random name."""
+    """Write the owner's attributes that are numbers, arrays or text, without its random name."""
     names = [name for name in getattr(type(owner), "properties", ()) if name not in ("id", "states")]
     values = [(name, getattr(owner, f"_property_{name}", None)) for name in sorted(names)]
     return repr([(name, np.asarray(v).tolist()) for name, v in values if isinstance(v, (int, float, str, np.ndarray))])

@@ -116,7 +116,7 @@ class Arrivals:
         return Made(name, min(when, time), stored, stamped=given.time is not None)
 
     def _time(self, name: str, stamp: float | None, time: float, now: float | None) -> float:
-        """When a measurement was made [s since the start]. Its stamp is on the caller's clock, if there is one."""
+        """Return when a measurement was made [s since the start]; a stamp is on the caller's clock."""
         if stamp is None:
             return time
         clock = time if now is None else now

@@ -48,7 +48,7 @@ LOG = logging.getLogger("ratt_opt.tracker")
 
 @dataclass(frozen=True, slots=True)
 class Reception:
-    """When measurements are still taken in.
+    """Limits on the times of measurements that are accepted.
 
     ``lag`` : seconds that one may come late (a longer one stores more moments, and takes more work); ``skew`` :
     seconds by which a stamp may be ahead of the step's clock, as clocks differ; it then counts as the step's. ``None``
@@ -356,7 +356,7 @@ class Tracker:
 
 
 def _outlying(innovation: MeasurementInnovation, gate: Gate | None) -> str:
-    """Why the gate refused a measurement, in one line."""
+    """Say in one line why the gate refused a measurement."""
     assert gate is not None
     m, limit = innovation.measurement, float(gate.limits(np.array(float(innovation.count))))
     square = f"normalised innovation squared {innovation.squared:.4g}"

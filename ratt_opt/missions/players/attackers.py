@@ -1,4 +1,4 @@
-"""Who attacks: nobody, the exact worst case, heuristics, or the user's own."""
+"""Attackers of a mission: none, the exact worst case, heuristics, or the user's own."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ ATTACKERS: dict[str, Attacker] = {
     "greedy": lambda problem, plan, _seed: greedy_attack(problem, plan),
     "random": lambda problem, plan, seed: random_attack(problem, plan, seed=seed),
 }
-"""Called with the problem, the plan and a seed of the step."""
+"""Attackers by name; each is called with the problem, the plan and a seed of the step."""
 
 
 def get_attacker(attacker: str | OwnAttacker) -> Attacker:

@@ -1,4 +1,4 @@
-"""Who plans: the library's planners by name, and the user's own."""
+"""Planners of a mission: the library's planners by name, and the user's own."""
 
 from __future__ import annotations
 

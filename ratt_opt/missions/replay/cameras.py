@@ -67,7 +67,7 @@ CAMERA_PLANNERS: dict[str, Chooser] = {
         problem, tuple(np.random.default_rng(seed).permutation(problem.n_robots)[:count].tolist())
     ),
 }
-"""Called with a problem of off and on, the number of cameras, and a seed of the step."""
+"""Choosers by name; each is called with a problem of off and on, the number of cameras, and a seed of the step."""
 
 
 def camera_planner(name: str) -> Chooser:

@@ -118,7 +118,7 @@ class _Frame:
 
 
 def _frame(picture: Picture, size: tuple[float, float]) -> _Frame:
-    """Around all places, and around the ellipses of targets."""
+    """Find the frame around all places, and around the ellipses of targets."""
     points = [picture.places]
     if picture.targets is not None:
         prior = picture.prior if picture.prior is not None else np.zeros((len(picture.targets), 2, 2))

@@ -67,7 +67,7 @@ class DopplerRadar(ByValue, SensorModel):
         return np.broadcast_to(stds**2, (*shape, 3))
 
     def sees(self, poses: FloatArray, points: FloatArray) -> BoolArray:
-        """Within the range and the field of view."""
+        """Tell which points are within the range and the field of view."""
         apart = np.linalg.norm(points[..., :2] - poses[..., :2], axis=-1)
         seen = apart <= (np.inf if self.max_range is None else self.max_range)
         if self.field_of_view is not None:

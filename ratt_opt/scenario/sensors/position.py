@@ -50,6 +50,6 @@ class PositionSensor(ByValue, SensorModel):
         return measured
 
     def sees(self, poses: FloatArray, points: FloatArray) -> BoolArray:
-        """Within the range."""
+        """Tell which points are within the range."""
         apart = np.linalg.norm(points - poses[..., :2], axis=-1)
         return np.asarray(apart <= (np.inf if self.max_range is None else self.max_range))

@@ -105,7 +105,7 @@ class RangeBearing(ByValue, SensorModel):
         return "must have a range >= 0" if measured[0] < 0 else None
 
     def sees(self, poses: FloatArray, points: FloatArray) -> BoolArray:
-        """Within the range and the field of view, and not without information."""
+        """Tell which points are within the range and the field of view, with information about them."""
         measured = measure(poses, points)
         seen = self.sensor.sees(measured[..., 0], measured[..., 1])
         if not states_information(self.sensor):

@@ -53,7 +53,7 @@ class TiltedCamera(ByValue, SensorModel):
         return np.full((*np.broadcast_shapes(poses.shape[:-1], points.shape[:-1]), 2), self.std**2)
 
     def sees(self, poses: FloatArray, points: FloatArray) -> BoolArray:
-        """Inside the cone about its axis."""
+        """Tell which points are inside the cone about its axis."""
         bearing, depression = np.moveaxis(self.measure(poses, points), -1, 0)
         off = np.cos(depression) * np.cos(self.tilt) * np.cos(bearing) + np.sin(depression) * np.sin(self.tilt)
         return np.asarray(np.arccos(np.clip(off, -1.0, 1.0)) <= self.field_of_view / 2)
@@ -106,7 +106,7 @@ class SphericalSensor(ByValue, SensorModel):
         return np.broadcast_to(stds**2, (*shape, 3))
 
     def sees(self, poses: FloatArray, points: FloatArray) -> BoolArray:
-        """Within the range."""
+        """Tell which points are within the range."""
         limit = np.inf if self.max_range is None else self.max_range
         return np.asarray(self.measure(poses, points)[..., 0] <= limit)
 

@@ -38,7 +38,7 @@ class LogDetObjective(InformationObjective):
 
     @property
     def rounding(self) -> float:
-        """Beside what the prior's log-determinants round off, every logarithm has an error of its own."""
+        """Bound on the rounding of values: that of the prior's log-determinants, and one error for every logarithm."""
         return VALUE_ROUNDING * (self.prior_magnitude + float(self.weights.sum())) + self.inverse_rounding(self.weights)
 
     def error_scale(self, size: FloatArray) -> FloatArray:

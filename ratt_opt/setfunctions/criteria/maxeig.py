@@ -233,7 +233,7 @@ class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
 
     @property
     def verifier_averages(self) -> bool:
-        """It compares each value with a level."""
+        """False: the verifier compares each value with a level."""
         return False
 
     def least_levels(self) -> FloatArray:

@@ -32,7 +32,7 @@ def output_covariances(matrices: FloatArray, output: FloatArray) -> FloatArray:
 
 
 def _of_each(call: Callable[..., None], matrices: FloatArray, output: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    """Raises ``InputError`` : the shapes of matrices and outputs differ, or an array has another type."""
+    """Call the compiled code. Raises ``InputError`` : shapes of matrices and outputs differ, or a type is another."""
     targets, q, d = output.shape
     flat = np.ascontiguousarray(matrices).reshape(prod(matrices.shape[:-3]), *matrices.shape[-3:])
     checked("matrices", flat, np.float64, (len(flat), targets, d, d))

@@ -40,7 +40,7 @@ left 5 % open after 12 s and 2 % after 30 s; 8 left 1 and 5 % after 12 s and clo
 
 
 class WinnerDivision:
-    """Uses proofs of weak groups within a node's own choices; the leaves they close go to the frontier."""
+    """Branching by winners: proofs of weak groups within a node's own choices close leaves for the frontier."""
 
     def __init__(self, winners: Winners, frontier: Frontier) -> None:
         self.task, self.pool, self.winners, self.frontier = winners.task, winners.pool, winners, frontier
@@ -95,7 +95,7 @@ class WinnerDivision:
 
 
 class Division:
-    """Chooses what to divide a node by; the children go to the frontier."""
+    """Branching rule of a node; the children go to the frontier."""
 
     def __init__(self, cuts: CutStore, by_winner: WinnerDivision) -> None:
         self.task, self.pool, self.cuts = cuts.task, cuts.pool, cuts

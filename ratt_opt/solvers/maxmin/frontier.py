@@ -181,7 +181,7 @@ class Frontier:
 
 
 class Backjumps:
-    """Follows up the tree what closes; an interrupt on the way leaves bound and proof valid."""
+    """Backjumping: nodes that close are followed up the tree; an interrupt leaves bound and proof valid."""
 
     def __init__(self, frontier: Frontier, cuts: CutStore) -> None:
         self.frontier, self.cuts = frontier, cuts

@@ -42,7 +42,7 @@ class Outcome(IntEnum):
     PROVED = 0
     """No node is left."""
     SPENT = 1
-    """Its nodes are spent."""
+    """All nodes of the run are spent."""
     PLAN = 2
     """One plan is left."""
     FULL = 3
@@ -50,7 +50,7 @@ class Outcome(IntEnum):
 
 
 class Ending(Enum):
-    """Why a search ended."""
+    """Reason why a search ended."""
 
     PROVED = "no plan is worth more than the level"
     LIMIT = "its runs were spent, or its record is long"
@@ -183,7 +183,7 @@ class SearchByLevels(ABC):
         self._searches = {share: search for share, search in self._searches.items() if not search.is_long}
 
     def _next_share(self, ending: Ending) -> None:
-        """After the best plan's level come the higher ones, each lower than the last, as long as they are proved."""
+        """Choose the next level: the best plan's, then higher ones, each lower than the last, while proved."""
         if ending is Ending.STOPPED:  # it goes on with the runs that are left
             return
         if self._share == 0 or ending is Ending.PROVED:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["OutcomePool"]
 
 LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
-"""Up to this many robots and outcomes all non-dominated outcomes are known beforehand; of more, each node would value
+"""Most robots and outcomes for listing all non-dominated outcomes beforehand; of more, each node would value
 most in vain. Not measured."""
 
 

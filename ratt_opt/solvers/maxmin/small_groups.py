@@ -116,7 +116,7 @@ class SmallTables:
 
 
 class SmallGroups:
-    """Narrows nodes by the outcomes in the pool whose groups can be listed, as far as the budget lasts."""
+    """Domain reduction of nodes by the pool's outcomes whose groups can be listed, within the budget."""
 
     def __init__(self, tables: SmallTables, division: WinnerDivision, budget: Budget) -> None:
         self.task, self.pool, self.division, self.budget = tables.task, tables.pool, division, budget

@@ -32,13 +32,13 @@ class TimeSlices:
         return left if self.incumbent.is_proved else min(left, self._slice.seconds_left)
 
     def stop(self) -> Stop | None:
-        """Why to stop searching now, if at all."""
+        """Return the reason to stop searching now, if there is one."""
         if (stop := self.budget.stop()) not in {None, Stop.NODES}:
             return stop
         return Stop.TIME if self._slice.stop() is Stop.TIME and not self.incumbent.is_proved else None
 
     def stop_within_node(self) -> Stop | None:
-        """Why to stop before the node in work is done: one that a limit of nodes admits is."""
+        """Return the reason to stop within a node; a limit of nodes is none."""
         stop = self.stop()
         return None if stop is Stop.NODES else stop
 
@@ -61,5 +61,5 @@ class TimeSlicesUntil(TimeSlices):
         return self._slices.seconds_left
 
     def stop(self) -> Stop | None:
-        """Why to stop searching now, if at all."""
+        """Return the reason to stop searching now, if there is one."""
         return self._slices.stop() or (Stop.NODES if self._is_enough() else None)

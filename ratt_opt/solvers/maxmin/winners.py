@@ -115,7 +115,7 @@ class _ClosingSearch:
 
 
 class GroupProofs:
-    """Closes groups of the pool; attempts are remembered until a better plan is known."""
+    """Proofs that close groups of the pool; attempts are remembered until a better plan is known."""
 
     def __init__(self, cuts: CutStore, rule: ClosingRule, budget: Budget) -> None:
         self.task, self.pool, self.cuts, self.rule, self.budget = cuts.task, cuts.pool, cuts, rule, budget
@@ -220,7 +220,7 @@ class Winners:
         return float(objective.value(objective.posterior_information(plan)[None])[0])
 
     def reconsider(self) -> list[int]:
-        """After the best plan turned out worse: close again what no longer closes; the outcomes if that fails."""
+        """Close again what no longer closes, as the best plan turned out worse; return the outcomes left open."""
         if self.proofs.rule.closes(self.finished):
             return []
         failed = []

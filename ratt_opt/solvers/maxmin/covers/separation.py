@@ -132,7 +132,7 @@ class Partitions:
 
 
 class Separation:
-    """Finds covers of one problem for any level, and puts them into its ``pool``."""
+    """Separation of covers of one problem for any level; they go into its ``pool``."""
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.choices = problem, CoverChoices.of(problem)
