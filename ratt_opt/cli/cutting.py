@@ -30,12 +30,18 @@ def cuts(
     k: Annotated[int | None, typer.Option("--cuts", help="Smallest largest group after this many cuts.")] = None,
     weights: Annotated[str | None, typer.Option("--weights", help="Edge attribute that a cut costs.")] = None,
     sizes: Annotated[str | None, typer.Option("--sizes", help="Node attribute that a group's size adds up.")] = None,
+    certificate: Annotated[
+        Path | None, typer.Option("--certificate", help="Write a proof of the lower end, for ratt-opt verify.")
+    ] = None,
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds for the search.")] = TIME_LIMIT,
     as_json: JsonFlag = False,
 ) -> None:
     """Find the fewest links to cut for groups of a size, or the smallest size that a number of cuts leaves.
 
     Directions are dropped. An interrupt (Ctrl-C) prints the bracket so far and exits with 130.
+
+    A certificate is made of prices, which may prove less than the lower end; the output says what it proves. With
+    --cuts it is about groups that are smaller by one: more links than the cuts allow must be cut for these.
     """
     from ratt_opt.attack.edge_cuts.fewest import fewest_cuts
     from ratt_opt.attack.edge_cuts.smallest import smallest_largest_group
@@ -50,6 +56,7 @@ def cuts(
     given = read_graph(file)
     graph = communication_graph(given, parallel="refuse")
     found: FewestCuts | LargestGroup
+    costs, loads = None, None
     if k is None:
         assert largest_group is not None
         costs = None if weights is None else _weights(given, graph, weights)
@@ -58,6 +65,9 @@ def cuts(
     else:
         found = smallest_largest_group(graph, k, time_limit=time_limit)
     document = _document(graph, found)
+    if certificate is not None and found.stop is not Stop.INTERRUPTED:
+        asked_of = {} if k is not None else {"weights": costs, "sizes": loads}
+        document["certificate"] = _certified(graph, found, certificate, time_limit, asked_of)
     if as_json:
         asked = {"largest_group": largest_group} if k is None else {"cuts": k}
         print_json({"format": "ratt-opt cuts", "version": 1, **asked, **document})
@@ -65,6 +75,25 @@ def cuts(
         print_lines(_lines(document, "weight of the cut" if k is None else "smallest largest group"))
     if found.stop is Stop.INTERRUPTED:
         raise WorkInterrupted("interrupted; printed is what was found until then")
+
+
+def _certified(
+    graph: "nx.Graph", found: "FewestCuts | LargestGroup", path: Path, seconds: float, asked: "dict[str, Any]"
+) -> dict[str, Any]:
+    """Write the certificate, and say what it proves.
+
+    Raises ``ProofError`` : no prices are proved in time, or groups of one robot are as large as any.
+    """
+    from ratt_opt.attack.edge_cuts.fewest import FewestCuts, fewest_cuts
+    from ratt_opt.certificates.edge_cuts import certify_cuts
+    from ratt_opt.errors import ProofError
+
+    if not isinstance(found, FewestCuts):
+        if found.lower <= 1:
+            raise ProofError("there is nothing to prove: no group has less than one robot")
+        found = fewest_cuts(graph, found.lower - 1, time_limit=seconds)
+    proved = certify_cuts(graph, found, path, time_limit=seconds, **asked)
+    return {"file": str(path), "size": found.size, "least_weight": proved.lower / proved.scale}
 
 
 def _weights(given: "nx.Graph", graph: "nx.Graph", name: str) -> "dict[Link, Any]":
@@ -120,4 +149,12 @@ def _lines(document: dict[str, Any], quantity: str) -> list[str]:
         f"cut links ({len(cut)}): {listed}{more}" if cut else "no link needs to be cut",
         f"groups left ({len(sizes)}), robots in each: {' '.join(sizes[:MOST_LISTED])}{rest}",
         *document["notes"],
+        *_proof_lines(document.get("certificate")),
     ]
+
+
+def _proof_lines(proof: dict[str, Any] | None) -> list[str]:
+    if proof is None:
+        return []
+    weight = f"{proof['least_weight']:g}"
+    return [f"certificate {proof['file']}: at least {weight} must be cut for groups of at most {proof['size']:g}"]

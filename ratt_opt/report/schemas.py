@@ -11,7 +11,10 @@ from typing import Any
 
 __all__ = ["OUTPUTS", "output_schema"]
 
-OUTPUTS = ("report", "certificate", "attack", "cuts", "mission", "verification", "new", "audit", "audit-summary")
+OUTPUTS = (
+    *("report", "certificate", "cut-certificate", "attack", "cuts", "mission", "verification", "new"),
+    *("audit", "audit-summary"),
+)
 """The outputs; a schema's ``format`` names each. The inputs' schemas are made from their records instead."""
 
 

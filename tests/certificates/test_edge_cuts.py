@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from copy import deepcopy
+from dataclasses import replace
 
+import jsonschema
 import networkx as nx
 import numpy as np
 import pytest
@@ -12,19 +14,26 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.certificates.verifier.edge_cuts import verify_cuts
 from ratt_opt.cli import run
+from ratt_opt.report.schemas import output_schema
 from tests.attack.edge_cuts.test_fewest import by_all_partitions, random_case
 
 
 def written(seed, path):
-    """A certificate with its network, weights, sizes and size; ``None`` if the answer needs no prices."""
-    graph, weights, sizes, _, size = random_case(seed)
-    found = ro.fewest_cuts(graph, size, weights=weights, sizes=sizes)
-    if found.prices is None:
+    """A certificate; ``None`` if protected links join robots above the size."""
+    graph, weights, sizes, protected, size = random_case(seed)
+    given = {"weights": weights, "sizes": sizes, "protected_links": protected}
+    truth = by_all_partitions(graph, weights, sizes, size, protected)
+    if truth is None:
         return None
-    verified = ro.certify_cuts(graph, found, path, weights=weights, sizes=sizes)
-    assert verified.lower == found.by_prices <= found.upper
-    assert verified.lower <= by_all_partitions(graph, weights, sizes, size)
-    return json.loads(path.read_text(encoding="utf-8"))
+    found = ro.fewest_cuts(graph, size, **given)
+    verified = ro.certify_cuts(graph, found, path, **given)
+    assert verified.n_protected == len(protected)
+    assert verified.lower <= truth == found.upper
+    if found.prices is not None:
+        assert verified.lower == found.by_prices
+    document = json.loads(path.read_text(encoding="utf-8"))
+    jsonschema.validate(document, output_schema("cut-certificate"))
+    return document
 
 
 def refused(document):
@@ -34,7 +43,6 @@ def refused(document):
 
 @pytest.mark.parametrize("first", range(0, 60, 20))
 def test_what_is_found_is_proved_and_forgeries_are_refused(first, tmp_path):
-    forged = 0
     for seed in range(first, first + 20):
         document = written(seed, tmp_path / "cuts.json")
         if document is None:
@@ -42,19 +50,38 @@ def test_what_is_found_is_proved_and_forgeries_are_refused(first, tmp_path):
         refused(document | {"claim": document["claim"] + 1})
         refused(document | {"tree": document["tree"][:-1]})
         refused(document | {"tree": [*document["tree"], document["tree"][-1]]})
-        dearest = int(np.argmax(document["prices"]))
-        lower = deepcopy(document)
-        lower["prices"][dearest] = 0
-        lower["claim"] = sum(lower["network"]["weights"]) - sum(lower["prices"]) // lower["unit"]
-        if lower["claim"] > by_all_partitions(*stated(document)):
-            refused(lower)
-            forged += 1
         heavier = deepcopy(document)
         heavier["network"]["weights"] = [9 * weight + 9 for weight in document["network"]["weights"]]
         heavier["claim"] = sum(heavier["network"]["weights"]) - sum(document["prices"]) // document["unit"]
         if heavier["claim"] > by_all_partitions(*stated(heavier)):
             refused(heavier)
-    assert forged
+
+
+def between(document):
+    """Weight of the links that can be cut: not between robots that protected links join."""
+    network = document["network"]
+    solid = nx.empty_graph(network["robots"])
+    solid.add_edges_from(network["protected"])
+    home = {i: k for k, group in enumerate(nx.connected_components(solid)) for i in group}
+    weights = zip(network["links"], network["weights"], strict=True)
+    return sum(weight for (i, j), weight in weights if home[i] != home[j])
+
+
+def test_a_hundred_forged_price_vectors_are_refused(tmp_path):
+    """Prices that claim more than is true, each with the tree of the honest ones."""
+    rng, forged, seed = np.random.default_rng(0), 0, 0
+    while forged < 110:
+        seed += 1
+        if (document := written(seed, tmp_path / "cuts.json")) is None:
+            continue
+        truth = by_all_partitions(*stated(document))
+        for _ in range(4):
+            prices = [int(price * rng.uniform(0.0, 1.0)) for price in document["prices"]]
+            claim = between(document) - sum(prices) // document["unit"]
+            if claim > truth:
+                refused(document | {"prices": prices, "claim": claim})
+                refused(document | {"prices": prices, "claim": truth + 1})
+                forged += 2
 
 
 def stated(document):
@@ -63,7 +90,7 @@ def stated(document):
     graph = nx.empty_graph(network["robots"])
     graph.add_edges_from(map(tuple, network["links"]))
     weights = dict(zip(map(tuple, network["links"]), network["weights"], strict=True))
-    return graph, weights, network["sizes"], document["size"]
+    return graph, weights, network["sizes"], document["size"], [tuple(link) for link in network["protected"]]
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +116,9 @@ def test_every_field_counts(karate):
         lambda d: d["network"]["links"].__setitem__(0, [1, 0]),
         lambda d: d["network"]["links"].__setitem__(0, d["network"]["links"][1]),
         lambda d: d["network"]["sizes"].__setitem__(0, 0),
+        lambda d: d["network"].update(protected=[[0, 1]]),
+        lambda d: d["network"].update(protected=[[0, 9]]),
+        lambda d: d["network"].pop("protected"),
         lambda d: d["tree"][leaf]["parts"].__setitem__(1, -1),
         lambda d: d["tree"][leaf]["parts"].__setitem__(1, 2**40),
         lambda d: d["tree"][leaf]["parts"].__setitem__(0, 78),
@@ -112,3 +142,12 @@ def test_the_command_reads_it(karate, tmp_path, capsys):
     assert run(["verify", str(tmp_path / "forged.json")]) == 1
     assert "prices prove less" in capsys.readouterr().err
     assert run(["verify", str(karate), "--explain"]) == 2
+
+
+def test_prices_are_searched_if_the_answer_came_without_them(tmp_path):
+    graph = nx.karate_club_graph()
+    found = replace(ro.fewest_cuts(graph, 8), prices=None)
+    assert ro.certify_cuts(graph, found, tmp_path / "cuts.json").lower == 31
+    with pytest.raises(ro.ProofError, match="no prices"):
+        ro.certify_cuts(graph, found, tmp_path / "late.json", time_limit=0)
+    assert not (tmp_path / "late.json").exists()

@@ -88,3 +88,29 @@ def test_files_that_are_no_edge_list_or_have_parallel_links_are_refused(tmp_path
         assert (code, said in error) == (2, True)
     code, _, error = asked(tmp_path / "negative.edgelist", "--largest-group", "2", "--weights", "weight")
     assert (code, "weights" in error) == (2, True)
+
+
+def test_certificates_of_both_questions(karate, asked, tmp_path, capsys):
+    proof = tmp_path / "proof.json"
+    words = ("--largest-group", "8", "--certificate", proof, "--json")
+    document = json.loads(asked(karate / "karate.graphml", *words)[1])
+    validate(document, output_schema("cuts"))
+    assert document["certificate"] == {"file": str(proof), "size": 8, "least_weight": 31}
+    assert run(["verify", str(proof)]) == 0
+    assert "weight at least 31" in capsys.readouterr().out
+    code, printed, _ = asked(karate / "karate.graphml", "--cuts", "34", "--certificate", proof)
+    assert code == 0
+    assert "at least 35 must be cut for groups of at most 7" in printed
+    assert run(["verify", str(proof)]) == 0
+    capsys.readouterr()
+    weighed = ("--largest-group", "10", "--weights", "weight", "--certificate", proof, "--json")
+    assert json.loads(asked(karate / "karate.edgelist", *weighed)[1])["certificate"]["least_weight"] > 0
+
+
+def test_nothing_is_written_if_there_is_nothing_to_prove(asked, tmp_path):
+    nx.write_graphml(nx.path_graph(4), tmp_path / "path.graphml")
+    proof = tmp_path / "proof.json"
+    code, _, error = asked(tmp_path / "path.graphml", "--cuts", "3", "--certificate", proof)
+    assert code == 1
+    assert "nothing to prove" in error
+    assert not proof.exists()

@@ -82,7 +82,7 @@ class CutSearch:
 
     def run(self) -> Stop:
         """Go through the parts until the ends meet or the budget is spent."""
-        by_prices = self._raise_prices, self._choose_known
+        by_prices = self.raise_prices, self._choose_known
         eliminated = () if self.target is not None else (self._eliminate,)
         is_large = self.network.n_nodes > self.params.priced_first
         undecided = (*eliminated, *by_prices) if is_large else (*by_prices, *eliminated)
@@ -144,8 +144,13 @@ class CutSearch:
         self.lower = goal + 1
         self.reason = elimination.reason
 
-    def _raise_prices(self) -> None:
-        """Column generation: prices between the best proved ones and the program's, until these meet."""
+    def raise_prices(self) -> None:
+        """Generate columns: prices between the best proved ones and the program's, until these meet.
+
+        Raises
+        ------
+        OutOfBudget : the budget is spent; ``prices`` are the best ones proved.
+        """
         network, unit = self.network, self.network.unit
         best: FloatArray | None = None
         smooth, nodes = self.params.smooth, self.params.first_nodes

@@ -49,13 +49,16 @@ def _exact(value: object) -> Fraction | None:
 
 @dataclass(frozen=True, eq=False)
 class CutNetwork:
-    """``members`` : robots of each node; ``ends`` : (m, 2) nodes of each link; ``weight`` : (m,); ``size`` : (n,).
+    """``sizes`` : of robots; ``members`` : robots of each node
+
+    ``ends`` : (m, 2) nodes of each link; ``weight`` : (m,); ``size`` : (n,) of nodes
 
     Weights are in steps of ``1 / scale``, sizes in steps of ``1 / size_scale``. Links of weight 0 are left out.
     """
 
     graph: CommunicationGraph
     links: dict[Link, int]
+    sizes: list[int]
     members: tuple[tuple[int, ...], ...]
     ends: IntArray
     weight: IntArray
@@ -91,6 +94,7 @@ class CutNetwork:
         network = cls(
             graph=graph,
             links=dict(zip(links, given, strict=True)),
+            sizes=own,
             members=members,
             ends=np.array(sorted(between), dtype=np.int64).reshape(-1, 2),
             weight=np.array([between[link] for link in sorted(between)], dtype=np.int64),

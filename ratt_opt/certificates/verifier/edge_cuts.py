@@ -5,7 +5,9 @@ It states prices ``q >= 0`` of robots. Let every group S of at most ``size`` tha
     unit * (weight of the links inside S)  <=  q(S).
 
 Then a partition into groups of at most ``size`` has links of weight at most ``sum(q) / unit`` inside, and cuts all
-others. (A group that is not connected has no more inside than its parts, and no lower prices.) The tree shows the
+others. (A group that is not connected has no more inside than its parts, and no lower prices.) Robots that protected
+links join count as one robot: links between two such robots add up, and links inside one are never cut. Numbers of
+robots and links below are those of that network, robots by their lowest member, links by their ends. The tree shows the
 condition for all S: a split decides whether one robot is in S, and a leaf closes its case. Some robots are inside, with
 links of weight ``base / unit`` less prices, and ``room`` is left. Free robots are those not decided that fit, and that
 robots inside reach through free ones. For any division of links between free robots among their ends, and any
@@ -46,6 +48,7 @@ class VerifiedCuts:
     size_scale: int
     n_robots: int
     n_links: int
+    n_protected: int
     leaves: int
     network_hash: str
 
@@ -54,7 +57,8 @@ class VerifiedCuts:
         weight = f"{self.lower}" if self.scale == 1 else f"{self.lower}/{self.scale}"
         size = f"{self.size}" if self.size_scale == 1 else f"{self.size}/{self.size_scale}"
         return [
-            f"network: {self.n_robots} robots, {self.n_links} links; SHA-256 of its data {self.network_hash}",
+            f"network: {self.n_robots} robots, {self.n_links} links, {self.n_protected} of them protected; "
+            f"SHA-256 of its data {self.network_hash}",
             f"proved in integers: links of weight at least {weight} must be cut so that no group has more than {size} "
             f"({self.leaves} leaves)",
             "not covered: whether the data describe the real network",
@@ -89,37 +93,71 @@ def _decide(document: dict[str, Any]) -> VerifiedCuts:
         scale=about.scale,
         size=about.size,
         size_scale=about.size_scale,
-        n_robots=about.robots,
-        n_links=len(about.links),
+        n_robots=about.stated_robots,
+        n_links=about.stated_links,
+        n_protected=about.protected_links,
         leaves=leaves,
         network_hash=document_hash(network),
     )
+
+
+def _pairs(where: str, stated: object, robots: int) -> list[tuple[int, int]]:
+    """Different pairs of robots, each in ascending order."""
+    found = []
+    for pair in array(where, stated):
+        i, j = (index("link end", end, robots) for end in array("link", pair, 2))
+        need(i < j, f"{where}: a link's ends are not in ascending order")
+        found.append((i, j))
+    need(len(set(found)) == len(found), f"{where}: a link is given twice")
+    return found
+
+
+def _joined(robots: int, links: list[tuple[int, int]]) -> list[int]:
+    """(robots,) the number of each robot's group by these links, groups by their lowest robot."""
+    lowest = list(range(robots))
+    for i, j in links:
+        tick()
+        low, high = sorted((lowest[i], lowest[j]))
+        lowest = [low if one == high else one for one in lowest]
+    number = {low: k for k, low in enumerate(sorted(set(lowest)))}
+    return [number[low] for low in lowest]
 
 
 class _Network:
     """The network as stated, and the parts of links as the leaves so far left them."""
 
     def __init__(self, stated: object, size: int) -> None:
-        count, links, weights, sizes, scale, size_scale = fields(
-            "network", stated, "robots links weights sizes scale size_scale"
+        count, links, weights, sizes, protected, scale, size_scale = fields(
+            "network", stated, "robots links weights sizes protected scale size_scale"
         )
-        self.robots, self.size = index("network robots", count, LARGEST), size
-        pairs = [array("link", link, 2) for link in array("network links", links)]
-        self.links = [tuple(index("link end", end, self.robots) for end in pair) for pair in pairs]
-        need(all(i < j for i, j in self.links), "network: a link's ends are not in ascending order")
-        need(len(set(self.links)) == len(self.links), "network: a link is given twice")
-        self.weights = [index("weight", one, LARGEST) for one in array("weights", weights, len(self.links))]
-        self.sizes = [index("robot's size", one, LARGEST) for one in array("sizes", sizes, self.robots)]
-        need(all(self.sizes), "network: a robot has no size")
+        self.stated_robots, self.size = index("network robots", count, LARGEST), size
+        given = _pairs("network links", links, self.stated_robots)
+        each = [index("weight", one, LARGEST) for one in array("weights", weights, len(given))]
+        own = [index("robot's size", one, LARGEST) for one in array("sizes", sizes, self.stated_robots)]
+        need(all(own), "network: a robot has no size")
+        joined = _pairs("protected links", protected, self.stated_robots)
+        need(set(joined) <= set(given), "network: a protected link is no link")
+        self.stated_links, self.protected_links = len(given), len(joined)
+        node = _joined(self.stated_robots, joined)
+        self.robots = 1 + max(node, default=-1)
+        self.sizes = [0] * self.robots
+        for robot, size_of_robot in enumerate(own):
+            self.sizes[node[robot]] += size_of_robot
+        between: dict[tuple[int, int], int] = {}
+        for (i, j), weight in zip(given, each, strict=True):
+            ends = min(node[i], node[j]), max(node[i], node[j])
+            if ends[0] != ends[1] and weight:
+                between[ends] = between.get(ends, 0) + weight
+        self.links = sorted(between)
+        self.weights = [between[ends] for ends in self.links]
         self.scale = 1 + index("scale less 1", scale - 1 if type(scale) is int else scale, LARGEST)
         self.size_scale = 1 + index(
             "size scale less 1", size_scale - 1 if type(size_scale) is int else size_scale, LARGEST
         )
         self.near: list[list[int]] = [[] for _ in range(self.robots)]
-        for (i, j), weight in zip(self.links, self.weights, strict=True):
-            if weight:
-                self.near[i].append(j)
-                self.near[j].append(i)
+        for i, j in self.links:
+            self.near[i].append(j)
+            self.near[j].append(i)
         self.parts = [0] * len(self.links)
         self.unit, self.prices = 1, [0] * self.robots
 

@@ -124,6 +124,7 @@ class Cooling:
         unit: float = 1.0,
     ) -> None:
         n_robots, arcs = len(network.start) - 1, len(network.robot)
+        checked("counts", counts, np.int64, (n_robots,))
         checked("group", group, np.int64, (n_robots,), written=True)
         if not ((group >= 0) & (group < count)).all():
             raise InputError("group", f"must be in [0, {count - 1}]", group)
@@ -141,7 +142,7 @@ class Cooling:
             start=address(checked("start", network.start, np.int64, (n_robots + 1,))),
             robot=address(checked("robot", network.robot, np.int64, (arcs,))),
             price=address(checked("price", network.price, np.int64, (arcs,))),
-            counts=address(checked("counts", counts, np.int64, (n_robots,))),
+            counts=address(counts),
             group=address(group),
             best=address(self.best),
             sizes=address(sizes),
