@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._files import write_atomically
+from ratt_opt.attack.edge_cuts.cut_search import CutSearch
 from ratt_opt.attack.edge_cuts.fewest import cut_network, size_in_steps
 from ratt_opt.attack.edge_cuts.kept_links import proof_tree
-from ratt_opt.attack.edge_cuts.search import CutSearch
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, VerifiedCuts, verify_cuts
 from ratt_opt.errors import ProofError
