@@ -1,4 +1,4 @@
-"""Rules that every module keeps: a constant has one value, and no import runs in a circle, types included."""
+"""Rules of all modules: one value a constant, one meaning a class name, no import circle (types included)."""
 
 from __future__ import annotations
 
@@ -85,3 +85,25 @@ def test_no_import_runs_in_a_circle() -> None:
     # Packages hand names on, and load those of the library only when they are asked for.
     faces = {module_name(path) for path in FILES if path.name == "__init__.py"}
     assert in_circles(imports({module: text for module, text in texts.items() if module not in faces})) == set()
+
+
+def classes_of(texts: dict[str, str]) -> dict[str, set[str]]:
+    """Class name -> modules that define such a class."""
+    found: dict[str, set[str]] = {}
+    for module, text in texts.items():
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.ClassDef):
+                found.setdefault(node.name, set()).add(module)
+    return found
+
+
+def test_a_second_meaning_is_noticed() -> None:
+    texts = {"p.a": "class A: pass\nclass B: pass", "p.b": "def f():\n    class A: pass"}
+    assert classes_of(texts) == {"A": {"p.a", "p.b"}, "B": {"p.a"}}
+
+
+def test_a_class_name_of_the_package_has_one_meaning() -> None:
+    package = {
+        module_name(path): path.read_text(encoding="utf-8") for path in FILES if path.is_relative_to(ROOT / "ratt_opt")
+    }
+    assert {name: modules for name, modules in classes_of(package).items() if len(modules) > 1} == {}

@@ -15,7 +15,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.graph.communication import Link
@@ -143,8 +143,3 @@ class CutNetwork:
         for k, one in enumerate(label.tolist()):
             found.setdefault(one, []).extend(self.members[k])
         return [tuple(sorted(group)) for group in found.values()]
-
-    def labels_of(self, groups: Iterable[Collection[int]]) -> IntArray:
-        """(n,) labels of the nodes, from robots of each group that hold whole nodes."""
-        home = {robot: k for k, group in enumerate(groups) for robot in group}
-        return np.array([home[group[0]] for group in self.members], dtype=np.int64)
