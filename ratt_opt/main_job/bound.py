@@ -251,8 +251,9 @@ def _problem_of(
     if model is not None:
         if not isinstance(model, MissionModel):
             raise InputError("model", "must be a MissionModel", type(model).__name__)
-        step = first_step(given, model)
-        return step.problem(objective or model.objective), step
+        chosen = model if objective is None else replace(model, objective=objective)
+        step = first_step(given, chosen)
+        return step.problem(chosen.objective), step
     if isinstance(given, Problem):
         if objective is not None:
             raise InputError("objective", "must be absent if a problem is given (it has its own)", objective)

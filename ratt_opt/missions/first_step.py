@@ -15,6 +15,7 @@ from ratt_opt.scenario.information_input import InformationInput, nested
 from ratt_opt.scenario.model import STATE_UNITS, Scenario
 from ratt_opt.scenario.planner_world import Now
 from ratt_opt.scenario.problem_record import near_pairs
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT
 from ratt_opt.setfunctions.information import InformationObjective
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def first_step(scenario: object, model: MissionModel) -> InformationInput:
         element_headings=tuple(poses[:, 2].tolist()),
         element_controls=nested(controls) if controls.shape[1] == 2 else None,
         target_positions=nested(targets),
-        output=None if world.reads == 2 else nested(np.eye(2, world.reads)),
+        output=nested(np.eye(2, world.reads)) if world.reads > 2 and model.objective in WITH_OUTPUT else None,
         units=STATE_UNITS[: objective.dimension],
     )
 

@@ -56,7 +56,7 @@ class MissionModel:
     linearisation : ``"second order"`` adds the second-order term to the noise of plans and filter; ``"first order"``
         is the textbook EKF, which leaves it out and is overconfident; ``"iterated"`` also linearises again at the
         estimate
-    objective : criterion of a plan; the log-det only if a single position is planned for
+    objective : criterion of a plan; the log-det only if a plan looks one step ahead
     output : of joint states, what counts: ``"mean"`` over the steps, or ``"last"``. The max-eigenvalue's mean is the
         worst axis of the errors of all steps together, over their number
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
@@ -139,10 +139,8 @@ class World:
         object.__setattr__(self, "sensors", sensors_of(self.scenario, self.model.sensor))
         object.__setattr__(self, "alike", robots_by_sensor(self.sensors))
         object.__setattr__(self, "move", TeamMotion.of(self.scenario, self.model.robot_motion))
-        if self.model.objective not in WITH_OUTPUT and (self.horizon > 1 or self.reads > 2):
-            rule = (
-                f"must be {' or '.join(WITH_OUTPUT)} if a plan looks several steps ahead or a sensor reads velocities"
-            )
+        if self.model.objective not in WITH_OUTPUT and self.horizon > 1:
+            rule = f"must be {' or '.join(WITH_OUTPUT)} if a plan looks several steps ahead"
             raise InputError("objective", rule, self.model.objective)
         if self.reads > self.motion.dimension:
             rule = f"must have states of {self.reads} numbers, as a sensor reads (such as 'constant velocity')"
@@ -180,7 +178,7 @@ class World:
         """The criterion of these sequences: of the part of the state in all steps that measurements depend on.
 
         A Gaussian's marginal is updated by what is measured of it alone, so velocities need not be carried along unless
-        a sensor reads them; only positions count then.
+        a sensor reads them; then only positions count, but to the log-det, which takes all that is read.
         """
         predicted = self._predictions(belief, time)
         blocks = self._blocks(sequences, predicted)
@@ -192,7 +190,7 @@ class World:
         information = _beside(prior, information)
         weights = np.array([target.weight for target in self.scenario.targets])
         output = output_matrix(self.model.output, self.horizon, r)
-        if output is None:
+        if output is None or self.model.objective not in WITH_OUTPUT:
             return get_criterion(self.model.objective)(prior, information, weights)
         return WITH_OUTPUT[self.model.objective](prior, information, weights, output=output)
 

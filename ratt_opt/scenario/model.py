@@ -19,11 +19,13 @@ from ratt_opt.scenario.record import NonNegative, Number, Positive, Record, Text
 from ratt_opt.scenario.sensor import Sensor
 from ratt_opt.scenario.sensors.kinds import AnySensor, kind_of
 from ratt_opt.scenario.sensors.model import SensorModel
+from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, get_criterion
 
 if TYPE_CHECKING:
     import networkx as nx
 
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["DEFAULT_CONTROLS", "STATE_UNITS", "Robot", "Scenario", "Target"]
 
@@ -335,6 +337,12 @@ class Scenario(ProblemRecord):
     @property
     def _output(self) -> FloatArray | None:
         return None if self.reads == 2 else np.eye(2, self.reads)
+
+    def _criterion(self, objective: str) -> InformationObjective:
+        """The criterion of positions; the log-det's of all that is read, whose gains do not depend on units."""
+        if objective in WITH_OUTPUT:
+            return super()._criterion(objective)
+        return get_criterion(objective)(*self._matrices)
 
     @property
     def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from inspect import signature
+from types import UnionType
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union, get_args, get_origin
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
@@ -62,6 +64,33 @@ _BOUNDS = {
 }
 
 
+class _Words(str):
+    """An annotation that is shown as it is."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _words(annotation: Any) -> str:
+    """An annotation for people: without what pydantic checks."""
+    if isinstance(annotation, str):
+        return annotation
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _words(arguments[0])
+    if origin in {Union, UnionType}:
+        return " | ".join(map(_words, arguments))
+    if annotation in {None, type(None)}:
+        return "None"
+    if origin is Literal:
+        return " | ".join(map(repr, arguments))
+    name = getattr(origin or annotation, "__name__", str(annotation))
+    inside = ", ".join("..." if one is ... else _words(one) for one in arguments)
+    return f"{name}[{inside}]" if inside else name
+
+
 class Record(BaseModel):
     """A frozen record; unknown fields, NaN and infinities are refused with an :class:`InputError`."""
 
@@ -72,6 +101,14 @@ class Record(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise first_fault(error) from None
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Give ``help`` a signature without the validators."""
+        super().__pydantic_init_subclass__(**kwargs)
+        given = signature(cls)
+        plain = [one.replace(annotation=_Words(_words(one.annotation))) for one in given.parameters.values()]
+        cls.__signature__ = given.replace(parameters=plain)
 
     def __eq__(self, other: object) -> bool:
         # Fields only: what a record has computed and kept is not part of what it is.

@@ -81,9 +81,7 @@ def simulate_tracking(
         check_distinct("robot", (check_integer("robot", i, low=0, high=scenario.n_robots - 1) for i in robots))
     )
     poses = scenario.predicted_poses[_check_plan(elements, scenario.robot, scenario.n_robots)]
-    if scenario.reads > 2:
-        raise InputError("scenario", "must have sensors of positions only (run_mission draws all)", scenario.reads)
-    predicted, prior = scenario.predicted_targets, scenario.prior
+    predicted, prior = scenario.predicted_states, scenario.prior
     truth = predicted + _correlated(rng.standard_normal((draws, *predicted.shape)), prior)
     sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
     numbers = max(2, *(getattr(sensor, "size", 2) for sensor in sensors))
@@ -91,18 +89,24 @@ def simulate_tracking(
     estimates, covariances = np.broadcast_to(predicted, truth.shape), np.broadcast_to(prior, (draws, *prior.shape))
     for i in group:
         sensor, pose = _model(sensors[i], i), poses[i]
-        actual = sensor.measure(pose, truth)
-        noisy = actual + np.sqrt(sensor.noise(pose, truth)) * luck[i][..., : sensor.size]
-        surprise = sensor.surprise(noisy, sensor.measure(pose, predicted))
+        r = sensor.reads
+        real, expected = truth[..., :r], predicted[..., :r]
+        noisy = sensor.measure(pose, real) + np.sqrt(sensor.noise(pose, real)) * luck[i][..., : sensor.size]
+        surprise = sensor.surprise(noisy, sensor.measure(pose, expected))
         # Every measurement is linearised at the prediction, as the plan does; the mean has moved since.
-        slope = sensor.jacobian(pose, predicted)
+        slope = np.zeros((len(predicted), sensor.size, predicted.shape[1]))
+        slope[..., :r] = sensor.jacobian(pose, expected)
         surprise -= np.einsum("mij,dmj->dmi", slope, estimates - predicted)
-        noise = sensor.noise(pose, predicted)[:, None, :] * np.eye(sensor.size)
-        seen = sensor.sees(pose, truth)
+        noise = sensor.noise(pose, expected)[:, None, :] * np.eye(sensor.size)
+        seen = sensor.sees(pose, real)
         gain = _gain(covariances, slope, noise) * seen[..., None, None]
         estimates = estimates + np.einsum("dmij,dmj->dmi", gain, surprise)
         covariances = _joseph(covariances, gain, slope, noise)
-    return Tracking(truth=readonly(truth), estimates=readonly(estimates), covariances=readonly(covariances))
+    return Tracking(
+        truth=readonly(truth[..., :2]),
+        estimates=readonly(estimates[..., :2]),
+        covariances=readonly(covariances[..., :2, :2]),
+    )
 
 
 def _model(sensor: Sensor | SensorModel, robot: int) -> SensorModel:
@@ -124,17 +128,17 @@ def _check_plan(elements: ArrayLike, robot: IntArray, n_robots: int) -> IntArray
 
 
 def _correlated(standard: FloatArray, covariance: FloatArray) -> FloatArray:
-    """Turn standard normal numbers (D, M, 2) into numbers of the given covariances (M, 2, 2)."""
+    """Turn standard normal numbers (D, M, d) into numbers of the given covariances (M, d, d)."""
     return np.asarray(np.einsum("mij,dmj->dmi", np.linalg.cholesky(covariance), standard))
 
 
 def _gain(covariances: FloatArray, jacobian: FloatArray, noise: FloatArray) -> FloatArray:
-    """(D, M, 2, 2) Kalman gain."""
+    """(D, M, d, z) Kalman gain."""
     transposed = np.swapaxes(jacobian, -1, -2)
     return np.asarray(covariances @ transposed @ np.linalg.inv(jacobian @ covariances @ transposed + noise))
 
 
 def _joseph(covariances: FloatArray, gain: FloatArray, jacobian: FloatArray, noise: FloatArray) -> FloatArray:
-    """(D, M, 2, 2) ``(I - K H) P (I - K H)' + K R K'``: positive definite under rounding, for any gain ``K``."""
-    keep = np.eye(2) - gain @ jacobian
+    """(D, M, d, d) ``(I - K H) P (I - K H)' + K R K'``: positive definite under rounding, for any gain ``K``."""
+    keep = np.eye(covariances.shape[-1]) - gain @ jacobian
     return np.asarray(keep @ covariances @ np.swapaxes(keep, -1, -2) + gain @ noise @ np.swapaxes(gain, -1, -2))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 
 import numpy as np
@@ -232,3 +233,50 @@ def test_files_without_the_new_fields_are_as_they_were() -> None:
     assert "z" not in document["robots"][0]
     assert "process_noise" not in document["targets"][0]
     assert document["targets"][0]["covariance"] == [[9.0, 0.0], [0.0, 9.0]]
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_log_det_takes_all_that_is_read(kind: str) -> None:
+    """Plans, reports and missions with the log-det of the state that sensors read, by its definition."""
+    sensor, motion, d, _ = CASES[kind]
+    robots = [Robot(x=0.0, y=0.0, z=30.0), Robot(x=60.0, y=10.0, heading=2.0, z=25.0)]
+    target = Target(x=30.0, y=40.0, z=8.0, speed=2.0, heading=0.5, velocity_std=0.5, process_noise=0.3)
+    team = Scenario(robots=robots, targets=[target], sensor=sensor, alpha_s=1, alpha_c=0)
+    f = team.problem("logdet").objective
+    for chosen in ([], [3], [3, 14]):
+        after = np.linalg.inv(team.prior[0]) + team.information[chosen, 0].sum(axis=0)
+        gained = np.linalg.slogdet(after)[1] + np.linalg.slogdet(team.prior[0])[1]
+        assert f(chosen) == pytest.approx(gained, rel=1e-9, abs=1e-9)
+    model = MissionModel(motion=motion, objective="logdet")
+    assert run_mission(team, steps=2, model=model).dimension == d
+    report = ro.bound(team, model=model, time_limit=2.0, guarantees="none")
+    assert report.optimum.lower <= report.optimum.upper
+    with pytest.raises(InputError, match="objective must be trace or maxeig if a plan looks several steps ahead"):
+        run_mission(team, steps=2, horizon=2, model=model)
+
+
+def test_one_step_is_drawn_with_velocities_too() -> None:
+    """Errors over many draws are as large as the posterior says, whose trace is what the plan promised."""
+    robots = [Robot(x=0.0, y=0.0), Robot(x=60.0, y=10.0, heading=2.0)]
+    near = ((0.04, 0.0), (0.0, 0.04))
+    target = Target(x=30.0, y=40.0, speed=2.0, heading=0.5, covariance=near, velocity_std=0.5, process_noise=0.1)
+    radar = DopplerRadar(range_std=0.2, bearing_std=0.01, rate_std=0.1)
+    team = Scenario(robots=robots, targets=[target], sensor=radar, alpha_s=0, alpha_c=0)
+    plan = ro.ratt(team.problem())
+    drawn = ro.simulate_tracking(team, plan, range(2), seed=0, draws=4000)
+    after = np.linalg.inv(np.linalg.inv(team.prior[0]) + team.information[plan.elements, 0].sum(axis=0))
+    np.testing.assert_allclose(drawn.covariances[0, 0], after[:2, :2], rtol=1e-9)
+    errors = drawn.estimates[:, 0] - drawn.truth[:, 0]
+    nees = np.einsum("di,ij,dj->d", errors, np.linalg.inv(after[:2, :2]), errors)
+    assert 1.8 < nees.mean() < 2.4  # 2, and what is not linear
+    nothing = ro.simulate_tracking(team, plan, [], seed=0, draws=100)
+    assert nothing.mse > 2 * drawn.mse
+
+
+def test_help_on_a_scenario_is_readable() -> None:
+    told = str(inspect.signature(Scenario))
+    assert "Annotated" not in told
+    assert "FieldInfo" not in told
+    assert "alpha_s: int" in told
+    assert "communication_range: float | None = None" in told
+    assert len(told) < 1200
