@@ -76,6 +76,8 @@ class TraceObjective(StateCriterion):
         if self.dimension == 2:
             rows = posterior_information
             return TraceObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+        if self.dimension == 1:
+            return np.asarray(self.weights / posterior_information[..., 0, 0])
         covariance = np.linalg.inv(posterior_information)
         return np.asarray(self.weights * np.trace(covariance, axis1=-2, axis2=-1))
 

@@ -148,6 +148,8 @@ class Division:
         if relaxed is None:
             choice = node.choices[open_robots[0]]
             return open_robots[0], (choice[:1], choice[1:])
+        if self.cuts.rows is not None:
+            return _least_decided(node, relaxed, open_robots)
         active = relaxed.duals > NEGLIGIBLE
         scores = self.cuts.scores(relaxed.cuts[active])
         losses = rounding_losses(node.choices, relaxed.selection, scores)
@@ -181,3 +183,9 @@ class Division:
         worst = worst[teams[worst] < relaxed.level]
         best = [max(self.pool.of_outcome[o], key=lambda g: values[g]) for o in worst.tolist()]
         return np.array(best, dtype=np.int64), relaxed.level - teams[worst]
+
+
+def _least_decided(node: TreeNode, relaxed: RelaxedPlan, open_robots: list[int]) -> tuple[int, tuple[IntArray, ...]]:
+    """The robot whose elements all have small weights, and each of its elements: rows bound those much lower."""
+    i = min(open_robots, key=lambda r: float(relaxed.selection[node.choices[r]].max()))
+    return i, tuple(np.split(node.choices[i], len(node.choices[i])))

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.candidates import Candidates
     from ratt_opt.solvers.maxmin.cut_store import CutStore
     from ratt_opt.solvers.maxmin.proof import Split, TreeNode
+    from ratt_opt.solvers.maxmin.value_spacing import ValueSpacing
 
 __all__ = ["Backjumps", "ClosingRule", "Frontier"]
 
@@ -35,6 +36,8 @@ MARGINS = 8
 """Roundings of a value that a bound may stay above a level it cannot be told from: tangents carry margins for their own
 rounding, of some such. Half of what a result counts as closed. With 1 a team whose optimum is 0 was divided on
 the winners of dozens of outcomes, without end."""
+SPACING_MARGIN = 1e-9
+"""Relative distance that bounds keep from the next value that a plan can have."""
 MOST_NODES = 128
 """Nodes of a proof that is tried with elements that were left out: some hundredths of a millisecond each. Not tuned."""
 
@@ -46,8 +49,8 @@ class ClosingRule:
     was closed may have to be opened again.
     """
 
-    def __init__(self, plans: Candidates, gap: float) -> None:
-        self.plans, self.gap = plans, gap
+    def __init__(self, plans: Candidates, gap: float, spacing: ValueSpacing | None = None) -> None:
+        self.plans, self.gap, self.spacing = plans, gap, spacing
         self._rounding = MARGINS * plans.pool.objective.rounding
 
     @property
@@ -58,7 +61,16 @@ class ClosingRule:
     @property
     def better(self) -> float:
         """The level that a plan has to exceed to be better by more than the gap."""
-        return (self.level + self._rounding) / (1 - min(self.gap, WIDEST_GAP))
+        better = (self.level + self._rounding) / (1 - min(self.gap, WIDEST_GAP))
+        return max(better, self._between)
+
+    @property
+    def _between(self) -> float:
+        """Bounds up to this close, as no plan has a value between it and one that is not better."""
+        if self.spacing is None:
+            return -np.inf
+        largest = self.spacing.below(self.spacing.next_above(self.level) * (1 - SPACING_MARGIN))
+        return self.spacing.next_above(largest) * (1 - SPACING_MARGIN) if self._missing(largest) >= 0 else -np.inf
 
     def closes(self, bound: float) -> bool:
         """Tell whether a bound is low enough to close a node."""
@@ -66,6 +78,9 @@ class ClosingRule:
 
     def missing(self, bound: float) -> float:
         """Return the amount by which a bound may rise and still close; negative if it does not close."""
+        return max(self._missing(bound), self._between - bound)
+
+    def _missing(self, bound: float) -> float:
         return self.level + self.gap * abs(bound) + self._rounding - bound
 
 

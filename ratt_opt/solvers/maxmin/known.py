@@ -9,8 +9,10 @@ import numpy as np
 
 from ratt_opt.solvers.maxmin.cut_store import CutStore
 from ratt_opt.solvers.maxmin.frontier import ClosingRule
+from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.small_groups import SmallTables
+from ratt_opt.solvers.maxmin.value_spacing import ValueSpacing
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:
@@ -45,7 +47,9 @@ class Known:
 
         ``by_rows`` : whether cuts may become rows of inequalities target by target, if that is worth it
         """
-        pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap)
+        rows_from = RowSeparation.first_node(task) if by_rows else np.inf
+        spacing = ValueSpacing.of(task, RowParams().value_errors) if rows_from == 0 else None
+        pool, rule = incumbent.pool, ClosingRule(incumbent.candidates, gap, spacing)
         cuts = CutStore(task, pool)
         return cls(
             task=task,
@@ -54,5 +58,5 @@ class Known:
             cuts=cuts,
             proofs=GroupProofs(cuts, rule, incumbent.budget),
             tables=SmallTables(task, pool),
-            rows_from=RowSeparation.first_node(task) if by_rows else np.inf,
+            rows_from=rows_from,
         )

@@ -164,8 +164,10 @@ class SearchByLevels(ABC):
             self._make_room()
             search = self._search()
             before = search.runs
-            ending = search.run(slices, self._left)
+            ending = search.run(slices, min(self._left, until - budget.nodes))
             self._left -= search.runs - before
+            if ending is Ending.LIMIT and self._left > 0 and not search.is_long:
+                continue  # these nodes are spent, its runs are not
             if ending is Ending.LIMIT and self._share == 0:
                 self._walk.run(budget.part(WALK_SHARE), WALK_KICKS)
             if ending is Ending.PROVED:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Attack
     from ratt_opt.solvers.maxmin.elements import Choices, Task
+    from ratt_opt.solvers.maxmin.value_spacing import ValueSpacing
 
 __all__ = [
     "Cover",
@@ -129,12 +130,16 @@ Node = Leaf | CoverLeaf | MarginalLeaf | ElementBranch | WinnerBranch
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class UpperProof(ByValue):
-    """Attacks, cuts and covers that the ``tree`` refers to by index; its nodes are in preorder."""
+    """Attacks, cuts and covers that the ``tree`` refers to by index; its nodes are in preorder.
+
+    ``spacing`` : which values plans can have, if the end was lowered to one of these
+    """
 
     attacks: tuple[Attack, ...]
     cuts: tuple[TangentCut, ...]
     tree: tuple[Node, ...]
     covers: tuple[Cover, ...] = ()
+    spacing: ValueSpacing | None = None
 
     def moved(self, to: Callable[[FloatArray], FloatArray]) -> UpperProof:
         """The proof whose tangents touch elsewhere, ``to`` (M, d, d) -> (M, d', d'): in other coordinates."""

@@ -237,7 +237,7 @@ class CutRounds:
             if len(outcome_of) >= CUTS_A_ROUND:
                 break
         winners, added = list(outcome_of), False
-        for winner, row in zip(winners, rows.rows(groups, winners), strict=True):
+        for winner, row in zip(winners, rows.rows(groups, winners, level - self.winners.plans.level), strict=True):
             if row.constant + float(row.scores @ selection) < level:
                 self.use(self.cuts.add(outcome_of[winner], winner, row))
                 added = True

@@ -156,10 +156,12 @@ def proved_by_tangents(
 ) -> MaxMinResult:
     """Prove the upper end of a result by tangents, covers and marginal gains alone, as certificates state proofs.
 
-    The result itself if its proof is such a one. Otherwise plans are searched again, from the one found. If a limit
-    ends that search, the upper end is the one proved by then, which may be larger.
+    Neither inequalities of single targets nor the spacing of values are part of such a proof. The result itself if its
+    proof is such a one. Otherwise plans are searched again, from the one found. If a limit ends that search, the upper
+    end is the one proved by then, which may be larger.
     """
-    if result.proof is None or not any(cut.lemmas for cut in result.proof.cuts):
+    proof = result.proof
+    if proof is None or (proof.spacing is None and not any(cut.lemmas for cut in proof.cuts)):
         return result
     params = TangentProofParams() if params is None else params
     part = budget.part(params.share, max_nodes=max(params.nodes, params.times * result.nodes))

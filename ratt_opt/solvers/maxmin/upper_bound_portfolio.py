@@ -12,7 +12,7 @@ taken back (``frontier.py``), which saves the siblings that were not searched ye
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,8 +49,19 @@ UNSEEN = 0.25
 """Least share of pairs of an element and a target without information for a search in depth."""
 SLICE, SLICE_GROWTH = 20, 2.0
 """Nodes of the concave search's second turn, after its root, and how many times as many each later one has."""
-NODES_IN_DEPTH = 10
-"""Nodes that the search in depth has for each of the concave one's."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DepthParams:
+    """Nodes that the search in depth has for each of the concave one's.
+
+    ``first`` : if rows are there from the root, at first; ``most`` : without rows, and after a turn that lowered the
+    upper end; ``in_vain`` : factor after each other turn beside rows: fast ends of either search against slow ones
+    """
+
+    first: float = 2.5
+    most: float = 10.0
+    in_vain: float = 0.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,6 +130,8 @@ class RestartedSearch:
 
     def _is_given_up(self) -> bool:
         """True if the current tree has taken too many nodes."""
+        if self._known.rows_from == 0:  # rows serve all nodes, so that a new tree would meet nothing new
+            return False
         return self._known.incumbent.budget.nodes >= self._until
 
     def _is_nearly_done(self) -> bool:
@@ -148,33 +161,53 @@ class UpperBoundPortfolio:
         self._concave = RestartedSearch(known)
         self._known = known
         self._in_depth = _search_in_depth(known) if in_depth else None
-        self._slice = float(SLICE)
+        self._slice, self._nodes = float(SLICE), 1.0
+        self._params = DepthParams()
+        self._in_depth_share = self._params.first if self._beside_rows else self._params.most
 
     @property
     def upper(self) -> float:
         """Proved upper bound on the optimum."""
+        spacing = self._known.rule.spacing
+        return self._before_spacing if spacing is None else spacing.below(self._before_spacing)
+
+    @property
+    def _before_spacing(self) -> float:
         return min(end.upper for end in self._ends())
 
     def proof(self) -> UpperProof:
-        """The proof of :attr:`upper`."""
-        return min(self._ends(), key=lambda end: end.upper).proof()
+        """The proof of :attr:`upper`, together with the spacing of values."""
+        proof = min(self._ends(), key=lambda end: end.upper).proof()
+        return replace(proof, spacing=self._known.rule.spacing)
 
     def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
         if self._in_depth is None:
             return self._concave.run(slices, progress)
-        most = 1.0
         while True:
             before = slices.budget.nodes
-            stop = self._run_concave(slices, progress, int(most))
+            stop = self._run_concave(slices, progress, int(self._nodes))
             if stop is Stop.NODES and slices.budget.stop() is None:
-                stop = self._in_depth.run(slices, progress, self.upper, int(NODES_IN_DEPTH * self._slice))
+                upper = self._before_spacing
+                stop = self._in_depth.run(slices, progress, upper, max(int(self._in_depth_share * self._slice), 1))
+                self._share_out(lowered=self._in_depth.upper < upper)
             if stop is not Stop.NODES or slices.budget.stop() is not None:
                 return stop
             if slices.budget.nodes == before:  # all that is left is what margins for rounding leave
                 return Stop.GAP
-            most = self._slice
+            self._nodes = self._slice
             self._slice *= SLICE_GROWTH
+
+    @property
+    def _beside_rows(self) -> bool:
+        return self._known.rows_from == 0
+
+    def _share_out(self, *, lowered: bool) -> None:
+        """Give the search in depth fewer nodes beside rows, unless it has just lowered the upper end."""
+        if lowered:
+            self._in_depth_share = self._params.most
+        elif self._beside_rows:
+            self._in_depth_share *= self._params.in_vain
 
     def _ends(self) -> list[RestartedSearch | SearchByLevels]:
         return [self._concave] if self._in_depth is None else [self._concave, self._in_depth]

@@ -27,8 +27,6 @@ __all__ = ["base_set_inequalities", "semidefinite"]
 
 EIGENVALUES = 8
 """Roundings, of a matrix's size and for each dimension, by which computed eigenvalues may be off."""
-ERRORS = 2
-"""Evaluation errors by which a difference of two values may be off."""
 CALL = 20
 """Operations of a marginal beside those of its matrices."""
 BLOCK = 64
@@ -46,11 +44,14 @@ def semidefinite(information: FloatArray) -> FloatArray:
 
 def base_set_inequalities(task: Task, params: RowParams) -> list[Inequalities]:
     """Build inequalities of the empty set, of elements, and of pairs of those with most information on a target."""
-    objective, error = task.objective, ERRORS * task.problem.evaluation_error
+    objective, error = task.objective, params.value_errors * task.problem.evaluation_error
     if not np.isfinite(error):  # nothing is known of differences of values
         return []
     information, first = semidefinite(objective.information), _first_of_each_class(task)
-    return [_of_target(objective, information[:, j], (j, first), params, error) for j in range(objective.n_targets)]
+    everything = task.objective.posterior_mixture(np.ones(objective.n))
+    least = params.similar * objective.target_values(everything)
+    every = (_of_target(objective, information[:, j], (j, first), params, error) for j in range(objective.n_targets))
+    return [_without_similar(task, own, float(tolerance)) for own, tolerance in zip(every, least, strict=True)]
 
 
 def _first_of_each_class(task: Task) -> IntArray:
@@ -95,3 +96,19 @@ def _of_target(
     origins = tuple(TargetInequality(target=target, lemma=lemma) for lemma in lemmas)
     targets = np.full(len(bases), target, dtype=np.int64)
     return Inequalities(targets=targets, constants=constants, scores=scores, origins=origins)
+
+
+def _without_similar(task: Task, of_target: Inequalities, least: float) -> Inequalities:
+    """Inequalities of one target that for some plan's set are lower by more than ``least`` than each kept before."""
+    constants, scores, kept = of_target.constants, of_target.scores, [0]
+    order = np.argsort(task.problem.robot, kind="stable")
+    starts = np.searchsorted(task.problem.robot[order], np.arange(task.problem.n_robots))
+    for k in range(1, len(constants)):
+        lower = np.maximum(scores[:, kept] - scores[:, k : k + 1], 0.0)[order]
+        gains = constants[kept] - constants[k] + np.maximum.reduceat(lower, starts, axis=0).sum(axis=0)
+        if gains.min() > least:
+            kept.append(k)
+    origins = tuple(of_target.origins[k] for k in kept)
+    return Inequalities(
+        targets=of_target.targets[kept], constants=constants[kept], scores=scores[:, kept], origins=origins
+    )

@@ -19,8 +19,12 @@ class RowParams:
     ``paired`` : elements of each target that tell most, whose pairs are base sets: stronger rows against more of them
     ``most_bases`` : base sets of all targets together; beyond it single elements that tell least are left out
     ``base_work`` : operations for their marginals, likewise: about a second
+    ``similar`` : share of a target's largest value; a base set that no plan's set bounds by more than it below another
+        one is left out: fewer inequalities to compare against weaker rows
+    ``value_errors`` : evaluation errors by which the difference of two values of a target may be off
     ``most`` : inequalities that are kept at once, beside base sets: memory and time of a round
     ``lower`` : share of a target's bound by which a tangent has to be lower to be kept
+    ``share`` : of what is open at a node, for all targets together, likewise: fewer tangents against more nodes
     ``inward`` : share of the way from a relaxed plan to the mean of earlier ones where rows are taken: fewer rounds
         against rows that cut less off
     ``newest`` : share of the newest relaxed plan in that mean
@@ -35,8 +39,11 @@ class RowParams:
     paired: int = 6
     most_bases: int = 12_000
     base_work: float = 3e8
+    similar: float = 1e-4
+    value_errors: int = 2
     most: int = 6_000
     lower: float = 1e-9
+    share: float = 0.03
     inward: float = 0.5
     newest: float = 0.2
     starts: int = 3

@@ -14,7 +14,7 @@ from ratt_opt.solvers.maxmin.rows.inequalities import tangents
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.solvers.maxmin.elements import Task
     from ratt_opt.solvers.maxmin.rows.inequalities import Inequalities, TargetInequality
     from ratt_opt.solvers.maxmin.rows.params import RowParams
@@ -90,17 +90,24 @@ class InequalityPool:
 
     def row(self, group: tuple[int, ...], selection: FloatArray) -> Row:
         """The lowest row of a group at a relaxed choice (E,)."""
-        inside = np.isin(self.task.problem.robot, group)
+        inside = self._members(group)[self.task.problem.robot]
         chosen = np.flatnonzero((selection > 0) & inside)
         values = (self._scores[: len(self), chosen] @ selection[chosen] + self._constants)[self._order]
-        ends = np.append(self._starts[1:], len(values))
-        lowest = self._order[[a + int(values[a:b].argmin()) for a, b in zip(self._starts, ends, strict=True)]]
+        least = np.minimum.reduceat(values, self._starts)
+        tight = np.flatnonzero(values == least[self._targets[self._order]])
+        lowest = self._order[tight[np.searchsorted(tight, self._starts)]]
         self._round += 1
         self._used[lowest] = self._round
         scores, constants = self._scores[lowest].sum(axis=0) * inside, self._constants[lowest]
         size = float(np.abs(constants).sum() + np.abs(scores).max(initial=0.0) * len(group))
         constant = float(constants.sum()) + ROUNDING * size
         return Row(group, constant, scores, tuple(self._origins[k] for k in lowest.tolist()))
+
+    def _members(self, group: tuple[int, ...]) -> BoolArray:
+        """(N,) which robots are in a group."""
+        inside = np.zeros(self.task.problem.n_robots, dtype=np.bool_)
+        inside[list(group)] = True
+        return inside
 
     def _forget(self) -> None:
         """Drop half of the inequalities that were learnt, those that were not lowest for longest."""

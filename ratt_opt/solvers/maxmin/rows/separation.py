@@ -87,14 +87,14 @@ class RowSeparation:
         self._mean = (1 - params.newest) * mean + params.newest * selection
         return np.asarray((1 - params.inward) * selection + params.inward * mean)
 
-    def rows(self, relaxed: RelaxedGroups, groups: list[int]) -> list[Row]:
-        """The lowest row of each group, with the tangents that lower it."""
-        self._touch(relaxed, groups)
+    def rows(self, relaxed: RelaxedGroups, groups: list[int], open_value: float) -> list[Row]:
+        """The lowest row of each group, with the tangents that lower it by a share of ``open_value``, the node's."""
+        self._touch(relaxed, groups, self.params.share * max(open_value, 0.0) / len(self._most))
         return [self.inequalities.row(self.outcomes.groups[g], relaxed.selection) for g in groups]
 
-    def _touch(self, relaxed: RelaxedGroups, groups: list[int]) -> None:
-        """Keep the tangents at some groups' points of targets whose value there is below what is known."""
-        lower = (relaxed.exact < relaxed.bounds - self.params.lower * self._most)[groups]
+    def _touch(self, relaxed: RelaxedGroups, groups: list[int], least: float = 0.0) -> None:
+        """Keep the tangents at some groups' points of targets whose value there is below what is known by ``least``."""
+        lower = (relaxed.exact < relaxed.bounds - np.maximum(self.params.lower * self._most, least))[groups]
         fresh = [
             tangents(self.task.objective, relaxed.points[g], np.flatnonzero(own))
             for g, own in zip(groups, lower, strict=True)
