@@ -113,9 +113,9 @@ class ThresholdDecision:
         return claim > 2 * self.threat.alpha_c * UNIT
 
     def _settled(self, threshold: float, size: int, budget: Budget) -> DualPrices:
-        """Prices that no group found by annealing pays, or not enough to claim more links than the budget.
+        """Solve until annealing finds no column of negative reduced cost, or the prices claim too few links.
 
-        The first rounds ask the prices that claim most: slack is measured against all groups, and not against few.
+        The first rounds anneal at the prices that claim most: slack is measured against all groups, not few.
         """
         rounds, links, part = (
             self._params.rounds,
@@ -133,7 +133,7 @@ class ThresholdDecision:
                 return found
 
     def _cheap(self, prices: DualPrices, threshold: float, size: int, budget: Budget) -> list[KnownGroup]:
-        """Groups that pay these prices, by annealing around each robot."""
+        """Find groups of negative reduced cost, by annealing around each robot."""
         question, groups, below = (
             question_of(prices, threshold, size, -self._params.tolerance),
             [],

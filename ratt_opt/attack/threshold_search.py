@@ -32,9 +32,10 @@ class Threshold(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answer:
-    """``partition`` : an attack below the threshold, if it is reached.
+    """Answer of a decision: the verdict and what proves it.
 
-    ``prices`` : that no weak group pays and that claim more links than the budget, if these refuted it
+    ``partition`` : an attack below the threshold, if it is reached; ``prices`` : if they refuted it, dual prices at
+    which no group below it has a negative reduced cost, and that claim more links than the budget
     """
 
     verdict: Threshold

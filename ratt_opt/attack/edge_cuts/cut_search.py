@@ -174,7 +174,7 @@ class CutSearch:
                 nodes *= 1 if len(found.groups) and smooth > 0 else 4
                 if smooth == 0.0 and found.is_complete:
                     return  # by HiGHS's tolerance
-                # If the program's own prices pay for what was found, ask nearer to them.
+                # If no column found is violated at the program's own prices, separate nearer to them.
                 smooth = 0.0 if smooth < 0.02 else 0.5 * smooth
 
     def _rounded_up(self, prices: FloatArray) -> IntArray:
@@ -189,7 +189,7 @@ class CutSearch:
         return groups[self.network.kept(groups) - groups @ prices > 1e-7]
 
     def _prove(self, prices: IntArray) -> None:
-        """Prices that pay for all groups: a partition keeps at most their sum."""
+        """Raise the lower bound: if every group keeps at most its prices, a partition keeps at most their sum."""
         lower = self.network.total - int(prices.sum()) // self.network.unit
         if lower > self.lower or self.prices is None:
             self.lower, self.prices = max(lower, 0), prices

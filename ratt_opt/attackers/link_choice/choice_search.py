@@ -1,7 +1,7 @@
 """Branch and bound over a covering problem: few links that block the worst of the known attacks.
 
 A choice of links is worth the weakest of the known attacks that withstand it. At a node some candidates are chosen and
-some excluded. Of the attacks that withstand the choice, going from the worst, one that can no longer be spoilt bounds
+some excluded. Of the attacks that withstand the choice, going from the worst, one that can no longer be blocked bounds
 the node, and so do attacks that share no candidate and together need more links than are left: one of them stays. The
 node branches on which candidate of the worst attack is chosen first: the ones before it are excluded.
 """
@@ -99,7 +99,7 @@ RANKED = 40
 
 
 def _most_useful_first(free: int, withstands: Sequence[KnownAttack]) -> Iterator[int]:
-    """The candidates of a mask, those first that spoil most of the worst attacks; the lowest among equals."""
+    """The candidates of a mask, those first that block most of the worst attacks; the lowest among equals."""
     size = (free.bit_length() + 7) // 8
     members = np.flatnonzero(_bits(free, size))
     useful = np.zeros(8 * size, dtype=np.int64)

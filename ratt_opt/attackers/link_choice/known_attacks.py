@@ -1,7 +1,7 @@
-"""Attacks as they bear on links still to be chosen: what each leaves, and how many of which links spoil it.
+"""Attacks as they bear on links still to be chosen: what each leaves, and how many of which links block it.
 
 An attack is kept as the groups it separates and the robots it blinds. Whatever links are chosen, it stays possible
-until ``need`` of the candidates between its groups are. So the fewer groups, the harder it is to spoil: groups are
+until ``need`` of the candidates between its groups are. So the fewer groups, the harder it is to block: groups are
 joined as long as the joint one is worth no more than what the attack has to show.
 """
 
@@ -70,7 +70,7 @@ class KnownAttacks:
         self._keep(self._joined(groups, attack.sensing, max(value, goal)), attack.sensing)
 
     def adapt(self, chosen: Sequence[Link], below: float) -> bool:
-        """Keep what known attacks become where links are chosen that spoil them, if one leaves at most ``below``.
+        """Keep what known attacks become where links are chosen that block them, if one leaves at most ``below``.
 
         Groups between which a chosen link remains are joined, the weakest first. Whether one was kept.
         """

@@ -21,7 +21,7 @@ __all__ = ["Addition", "Protection", "Upgrade", "checked_links"]
 
 
 class Upgrade(Protocol):
-    """A kind of change: which links may be chosen, and which of them spoil an attack."""
+    """A kind of change: which links may be chosen, and which of them block an attack."""
 
     problem: Problem
     candidates: tuple[Link, ...]
@@ -37,7 +37,7 @@ class Upgrade(Protocol):
 
 
 class Protection:
-    """Links that cannot be cut: one of them between two groups of an attack spoils it.
+    """Links that cannot be cut: one of them between two groups of an attack blocks it.
 
     Raises ``InputError`` : a candidate is no link.
     """
@@ -63,7 +63,7 @@ class Protection:
 
 
 class Addition:
-    """New links, which the adversary may cut like others: what its budget does not cover spoils the attack.
+    """New links, which the adversary may cut like others: what its budget does not cover blocks the attack.
 
     Raises ``InputError`` : a candidate is a link already, or its ends are not two robots.
     """

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite, check_integer, check_number, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.missions.live.history import ON_TIME, Made
+from ratt_opt.missions.live.history import ON_TIME, StampedMeasurement
 from ratt_opt.missions.live.packets import PacketError
 from ratt_opt.missions.live.state import Measurement
 from ratt_opt.scenario.record import LARGEST
@@ -75,14 +75,16 @@ class Arrivals:
                 raise InputError(f"pose_covariances[{i}]", rule, matrix.tolist())
         return readonly(places), readonly((unsure + np.swapaxes(unsure, -1, -2)) / 2)
 
-    def made(self, measurements: list[Measurement], time: float, now: float | None) -> list[Made | PacketError]:
+    def made(
+        self, measurements: list[Measurement], time: float, now: float | None
+    ) -> list[StampedMeasurement | PacketError]:
         """Every measurement with its time since the start, or why it cannot be taken in.
 
         ``time`` and ``now`` are those of this step. InputError : one is no measurement, or not of its sensor's length.
         """
         return [self._made(f"measurements[{k}]", one, time, now) for k, one in enumerate(measurements)]
 
-    def _made(self, name: str, given: Measurement, time: float, now: float | None) -> Made | PacketError:
+    def _made(self, name: str, given: Measurement, time: float, now: float | None) -> StampedMeasurement | PacketError:
         if not isinstance(given, Measurement):
             raise InputError(name, "must be a Measurement", type(given).__name__)
         try:
@@ -90,7 +92,7 @@ class Arrivals:
         except PacketError as fault:
             return fault
 
-    def _checked(self, name: str, given: Measurement, time: float, now: float | None) -> Made:
+    def _checked(self, name: str, given: Measurement, time: float, now: float | None) -> StampedMeasurement:
         robot = check_integer(f"{name}.robot", given.robot, low=0)
         target = check_integer(f"{name}.target", given.target, low=0)
         values = check_finite(f"{name}.values", given.values, ndim=1)
@@ -113,7 +115,7 @@ class Arrivals:
             raise PacketError("impossible", f"{name}.values", fault, values.tolist())
         ahead = when if when > time else None
         stored = Measurement(robot, target, tuple(values.tolist()), ahead)
-        return Made(name, min(when, time), stored, stamped=given.time is not None)
+        return StampedMeasurement(name, min(when, time), stored, stamped=given.time is not None)
 
     def _time(self, name: str, stamp: float | None, time: float, now: float | None) -> float:
         """Return when a measurement was made [s since the start]; a stamp is on the caller's clock."""

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.missions.world import World
 
-__all__ = ["Gate", "Judgement", "Sighted", "gate_of", "judged"]
+__all__ = ["Gate", "Judgement", "SightingSet", "gate_of", "judged"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,17 +68,17 @@ def gate_of(gate: float | Gate | None) -> Gate | None:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sighted:
+class SightingSet:
     """All that was measured at one time: ``poses`` robot by robot, their covariances or ``None``, ``readings``."""
 
     poses: Mapping[int, FloatArray]
     readings: Mapping[int, Reading]
     pose_covariances: FloatArray | None
 
-    def only(self, accepted: BoolArray) -> Sighted:
+    def only(self, accepted: BoolArray) -> SightingSet:
         """Keep the readings that were accepted (N, M)."""
         kept = {i: Reading(one.values, one.seen & accepted[i]) for i, one in self.readings.items()}
-        return Sighted(self.poses, kept, self.pose_covariances)
+        return SightingSet(self.poses, kept, self.pose_covariances)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +96,9 @@ class Judgement:
     found: tuple[int, ...] = ()
 
 
-def judged(world: World, belief: Belief, sighted: Sighted, refused: tuple[int, ...], gate: Gate | None) -> Judgement:
+def judged(
+    world: World, belief: Belief, sighted: SightingSet, refused: tuple[int, ...], gate: Gate | None
+) -> Judgement:
     """Judge the sightings of one time about the predicted ``belief``."""
     squares = _squares(world, belief, sighted)
     seen: BoolArray = np.zeros(squares.shape, dtype=np.bool_)
@@ -115,7 +117,7 @@ def judged(world: World, belief: Belief, sighted: Sighted, refused: tuple[int, .
     return Judgement(belief, accepted, squares, tuple(counts), tuple(lost))
 
 
-def _squares(world: World, belief: Belief, sighted: Sighted) -> FloatArray:
+def _squares(world: World, belief: Belief, sighted: SightingSet) -> FloatArray:
     return innovations_squared(world, belief, sighted.poses, sighted.readings, sighted.pose_covariances)
 
 
@@ -125,7 +127,9 @@ def _one(shape: tuple[int, ...], i: int, j: int) -> BoolArray:
     return chosen
 
 
-def _found_again(world: World, belief: Belief, sighted: Sighted, target: int, gate: Gate) -> tuple[Belief, BoolArray]:
+def _found_again(
+    world: World, belief: Belief, sighted: SightingSet, target: int, gate: Gate
+) -> tuple[Belief, BoolArray]:
     """The belief of a lost target, widened for the sighting with which most others agree, and who agrees (N,)."""
     limits = gate.limits(np.array([float(sensor.size) for sensor in world.sensors]))
     distances = _squares(world, belief, sighted)[:, target] / limits
@@ -145,7 +149,7 @@ def _found_again(world: World, belief: Belief, sighted: Sighted, target: int, ga
     return best
 
 
-def _widened(world: World, belief: Belief, sighted: Sighted, pair: tuple[int, int], gate: Gate) -> Belief:
+def _widened(world: World, belief: Belief, sighted: SightingSet, pair: tuple[int, int], gate: Gate) -> Belief:
     """The belief with a target's covariance scaled so that one sighting is as surprising as expected (bisection)."""
     robot, target = pair
     expected, low, high = world.sensors[robot].size, 0.0, float(np.log(gate.widest))

@@ -17,7 +17,7 @@ import numpy as np
 
 from ratt_opt._validation import BoolArray, FloatArray, readonly
 from ratt_opt.missions.belief import Belief
-from ratt_opt.missions.live.gate import Sighted, judged
+from ratt_opt.missions.live.gate import SightingSet, judged
 from ratt_opt.missions.live.packets import MeasurementInnovation, PacketError
 from ratt_opt.missions.live.state import Measurement, Moment
 from ratt_opt.missions.sensing import Reading, group_pieces
@@ -29,14 +29,14 @@ if TYPE_CHECKING:
     from ratt_opt.missions.live.gate import Gate, Judgement
     from ratt_opt.missions.world import World
 
-__all__ = ["ON_TIME", "Filter", "Made", "TakenIn"]
+__all__ = ["ON_TIME", "FilterUpdate", "MomentFilter", "StampedMeasurement"]
 
 ON_TIME = 1e-6
 """Times that differ by less than this share of the sampling period count as one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class StampedMeasurement:
     """A measurement that was made at ``time`` [s since the start]; ``name`` is for errors.
 
     ``stamped`` : whether the caller said when. Then a repeated delivery is found.
@@ -49,7 +49,7 @@ class Made:
 
 
 @dataclass(slots=True)
-class TakenIn:
+class FilterUpdate:
     """The ``moments`` with new measurements, and what became of these.
 
     ``faults`` : repeated ones; ``silent`` : those that told nothing; ``innovations`` : of all that were judged;
@@ -64,7 +64,7 @@ class TakenIn:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Filter:
+class MomentFilter:
     """The filter over moments: ``targets`` (M,) numbers of the targets, ``born`` (M,) when each appeared [s]."""
 
     world: World
@@ -72,12 +72,12 @@ class Filter:
     born: FloatArray
     gate: Gate | None
 
-    def taken_in(self, moments: Sequence[Moment], made: Sequence[Made]) -> TakenIn:
+    def taken_in(self, moments: Sequence[Moment], made: Sequence[StampedMeasurement]) -> FilterUpdate:
         """The moments with new measurements, and what became of each.
 
         The last moment is new: its belief and all after the first change are worked out anew.
         """
-        kept, found = list(moments), TakenIn()
+        kept, found = list(moments), FilterUpdate()
         first = len(kept) - 1
         for new in made:
             k = self._placed(kept, new.time)
@@ -131,7 +131,7 @@ class Filter:
         moments.insert(k, moment)
         return k
 
-    def _repeated(self, moments: Sequence[Moment], k: int, new: Made) -> PacketError | None:
+    def _repeated(self, moments: Sequence[Moment], k: int, new: StampedMeasurement) -> PacketError | None:
         near, pair = ON_TIME * self.world.period, (new.measurement.robot, new.measurement.target)
         made = new.time if new.measurement.time is None else new.measurement.time
         own = moments if new.stamped else moments[k : k + 1]
@@ -146,13 +146,13 @@ class Filter:
             return PacketError("repeated", new.name, rule, pair)
         return None
 
-    def _updated(self, before: Moment, moment: Moment, found: TakenIn) -> Moment:
+    def _updated(self, before: Moment, moment: Moment, found: FilterUpdate) -> Moment:
         """The moment after the one before it; what became of its measurements is noted in ``found``."""
         belief = self.predicted(before.belief, before.time, moment.time)
         if not moment.measurements:
             return replace(moment, belief=belief, refused=before.refused)
         unsure = moment.pose_covariances if moment.pose_covariances.any() else None
-        sighted = Sighted(dict(enumerate(moment.poses)), self._readings(moment.measurements), unsure)
+        sighted = SightingSet(dict(enumerate(moment.poses)), self._readings(moment.measurements), unsure)
         verdict = judged(self.world, belief, sighted, before.refused, self.gate)
         kept = sighted.only(verdict.accepted)
         pieces, _ = group_pieces(
@@ -162,7 +162,7 @@ class Filter:
         self._note(moment, verdict, np.asarray(pieces.information.any(axis=(-1, -2))), found)
         return replace(moment, belief=belief, refused=verdict.refused)
 
-    def _note(self, moment: Moment, verdict: Judgement, telling: BoolArray, found: TakenIn) -> None:
+    def _note(self, moment: Moment, verdict: Judgement, telling: BoolArray, found: FilterUpdate) -> None:
         row = self._rows()
         for m in moment.measurements:
             i, j = m.robot, row[m.target]

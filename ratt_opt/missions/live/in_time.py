@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.scenario.planner_world import PlannerWorld
 
-__all__ = ["InTime", "Planned"]
+__all__ = ["Planned", "TimedPlanner"]
 
 LOG = logging.getLogger("ratt_opt.tracker")
 SEARCH_SHARE = 0.7
@@ -45,7 +45,7 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Asked:
+class PlanRequest:
     """Request of a step: its ``problem``, the ``world`` it comes from, the rest of the last plan to ``start`` from."""
 
     problem: Problem
@@ -54,7 +54,7 @@ class Asked:
 
 
 @dataclass(slots=True)
-class InTime:
+class TimedPlanner:
     """Plans within ``time_limit`` [s] of a step's beginning, or whenever the planner is done if there is no limit.
 
     ``fallback_nodes`` : of each worst case by which known plans are compared if the planner fails; more prove more and
@@ -66,7 +66,7 @@ class InTime:
     fallback_nodes: int = 1000
     _running: Future[IntArray] | None = field(default=None, init=False, repr=False)
 
-    def __call__(self, asked: Asked, began: float, *, strict: bool) -> Planned:
+    def __call__(self, asked: PlanRequest, began: float, *, strict: bool) -> Planned:
         """Plan one step. A search begins from the rest of the last plan, and from RATT's plan."""
         try:
             return self._asked(asked, began)
@@ -76,7 +76,7 @@ class InTime:
             LOG.warning("the planner failed: %s: %s", type(error).__name__, error)
             return Planned(self._best_known(asked), f"{type(error).__name__}: {error}")
 
-    def _asked(self, asked: Asked, began: float) -> Planned:
+    def _asked(self, asked: PlanRequest, began: float) -> Planned:
         if self.time_limit is None:
             return Planned(self._whole(asked))
         known = ratt(asked.problem).elements
@@ -101,19 +101,19 @@ class InTime:
     def __setstate__(self, state: tuple[Planner, float | None, int]) -> None:
         (self.planner, self.time_limit, self.fallback_nodes), self._running = state, None
 
-    def _best_known(self, asked: Asked) -> IntArray:
+    def _best_known(self, asked: PlanRequest) -> IntArray:
         """RATT's plan, or the rest of the last plan if more of that is proved to be left by the worst attack."""
         problem = asked.problem
         plans = [ratt(problem).elements, asked.start]
         return max(plans, key=lambda plan: worst_case_attack(problem, plan, max_nodes=self.fallback_nodes).lower)
 
-    def _whole(self, asked: Asked) -> IntArray:
+    def _whole(self, asked: PlanRequest) -> IntArray:
         plan, problem = self.planner, asked.problem
         if isinstance(plan, AnytimePlanner):
             return elements_of(plan(problem, start=asked.start), problem)
         return elements_of(planned_with(plan, problem, asked.world), problem)
 
-    def _within(self, asked: Asked, budget: Budget) -> IntArray:
+    def _within(self, asked: PlanRequest, budget: Budget) -> IntArray:
         plan, problem = self.planner, asked.problem
         if isinstance(plan, AnytimePlanner):
             return elements_of(plan.within(problem, budget, asked.start), problem)

@@ -18,8 +18,8 @@ from ratt_opt._validation import FloatArray, IntArray, check_number, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.missions.live.arrivals import Arrivals
 from ratt_opt.missions.live.gate import Gate, gate_of
-from ratt_opt.missions.live.history import Filter, Made
-from ratt_opt.missions.live.in_time import LATE, Asked, InTime, Planned
+from ratt_opt.missions.live.history import MomentFilter, StampedMeasurement
+from ratt_opt.missions.live.in_time import LATE, Planned, PlanRequest, TimedPlanner
 from ratt_opt.missions.live.packets import PacketError, Skipped, TrackerPlan
 from ratt_opt.missions.live.roster import threat, with_attack, with_target, without_robot, without_target
 from ratt_opt.missions.live.state import Moment, TrackerState
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.missions.ahead.horizon import Sequences
     from ratt_opt.missions.belief import Belief
-    from ratt_opt.missions.live.history import TakenIn
+    from ratt_opt.missions.live.history import FilterUpdate
     from ratt_opt.missions.live.packets import MeasurementInnovation
     from ratt_opt.missions.live.state import Measurement
     from ratt_opt.missions.players.planners import Planner
@@ -113,7 +113,7 @@ class Tracker:
         self.world = World(scenario, model or MissionModel(), horizon)
         self.lag, self.skew = Reception(lag, skew).seconds(self.world.period)
         self.gate, self.strict = gate_of(gate), strict
-        self._plan = InTime(get_planner(planner), time_limit)
+        self._plan = TimedPlanner(get_planner(planner), time_limit)
         self.state = self._start() if state is None else self._checked(state)
         self.controls: FloatArray = readonly(self.state.controls[:, 0])
 
@@ -283,8 +283,8 @@ class Tracker:
         time, belief = self.state.time + passed, self.state.belief
         made = arrivals.made(measurements, time, clock)
         moment = Moment(time=time, poses=poses, pose_covariances=unsure, belief=belief, refused=(0,) * len(belief.mean))
-        filtering = Filter(self.world, self.state.targets, np.array(self.state.born), self.gate)
-        good = [one for one in made if isinstance(one, Made)]
+        filtering = MomentFilter(self.world, self.state.targets, np.array(self.state.born), self.gate)
+        good = [one for one in made if isinstance(one, StampedMeasurement)]
         taken = filtering.taken_in((*self.state.moments, moment), good)
         faults = [one if isinstance(one, PacketError) else taken.faults.get(id(one.measurement)) for one in made]
         if strict and (first := next((fault for fault in faults if fault is not None), None)) is not None:
@@ -296,9 +296,9 @@ class Tracker:
     def _told(
         self,
         measurements: list[Measurement],
-        made: list[Made | PacketError],
+        made: list[StampedMeasurement | PacketError],
         faults: list[PacketError | None],
-        taken: TakenIn,
+        taken: FilterUpdate,
     ) -> TrackerPlan:
         """Report the fate of each measurement; the plan itself is still to be made."""
         skipped, innovations = [], []
@@ -310,7 +310,7 @@ class Tracker:
                 skipped.append(Skipped(given, fault.reason, str(fault)))
             elif innovation is not None and not innovation.accepted:
                 skipped.append(Skipped(given, "outlier", _outlying(innovation, self.gate)))
-            elif isinstance(one, Made) and id(one.measurement) in taken.silent:
+            elif isinstance(one, StampedMeasurement) and id(one.measurement) in taken.silent:
                 why = f"robot {given.robot}'s sighting of target {given.target} tells nothing about it"
                 skipped.append(Skipped(given, "tells nothing", why))
         for packet in skipped:
@@ -345,11 +345,11 @@ class Tracker:
         at = Now(state.steps, state.time, state.poses, state.attacks)
         world = planner_world(self.world, state.belief, offered, problem, at)
         if not lost:
-            return self._plan(Asked(problem, world, rest), began, strict=strict)
+            return self._plan(PlanRequest(problem, world, rest), began, strict=strict)
         own = np.flatnonzero(np.isin(offered.owner, alive))
         part = part_problem(problem, objective.restricted_to(own), alive, own, threatened)
         world = world.part(alive, own, world.states, world.covariances)
-        planned = self._plan(Asked(part, world, np.searchsorted(own, rest[alive])), began, strict=strict)
+        planned = self._plan(PlanRequest(part, world, np.searchsorted(own, rest[alive])), began, strict=strict)
         elements = rest.copy()
         elements[alive] = own[planned.elements]
         return Planned(elements, planned.fallback)
