@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import sysconfig
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,7 +27,7 @@ def installed(what: Path, home: Path, *, offline: bool) -> Path:
     if offline:
         run_alone([sys.executable, "-m", "venv", "--without-pip", home])
         packages = Path(run_alone([python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))"]).strip())
-        (packages / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
+        (packages / "dependencies.pth").write_text("\n".join(_site_packages()) + "\n", encoding="utf-8")
         without = ["--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed"]
         pip = [sys.executable, "-m", "pip", "--python", python, "install", *without]
     else:
@@ -36,6 +35,11 @@ def installed(what: Path, home: Path, *, offline: bool) -> Path:
         pip = [python, "-m", "pip", "install"]
     run_alone([*pip, "--quiet", "--disable-pip-version-check", what.resolve()])
     return home / "bin"
+
+
+def _site_packages() -> list[str]:
+    """Folders from which the running environment imports what is installed, also those that it borrows."""
+    return [folder for folder in sys.path if Path(folder).name == "site-packages"]
 
 
 def run_alone(command: Sequence[object], folder: Path | None = None) -> str:

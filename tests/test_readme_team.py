@@ -14,7 +14,9 @@ README = Path(__file__).parent.parent / "README.md"
 
 def loss_by_links(seed: int) -> float:
     """Share of the best plan's worst case under blinding alone that cutting links takes away."""
-    scenario = ro.limited_view_scenario(6, 6, alpha_s=2, alpha_c=4, seed=seed, view=60, communication_range=45)
+    scenario = ro.limited_view_scenario(
+        6, 6, alpha_s=2, alpha_c=4, seed=seed, view=60, reach=40, communication_range=45
+    )
     problem = scenario.problem("trace")
     best = ro.solve_maxmin(problem)
     assert best.lower == pytest.approx(best.upper, rel=1e-6)

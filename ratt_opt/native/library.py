@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 import numpy as np
@@ -32,16 +34,26 @@ def library() -> ctypes.CDLL:
 
     Raises ``ImportError`` : it was never compiled, from other sources, or is not what was compiled.
     """
-    if fault := fault_of(LIBRARY, RECORD):
+    compiled, record = _compiled()
+    if fault := fault_of(compiled, record):
         raise ImportError(f"the loops of ratt_opt {fault}: {REMEDY}")
     try:
-        loaded = ctypes.CDLL(str(LIBRARY))
+        loaded = ctypes.CDLL(str(compiled))
     except OSError as error:  # of another system, or a C library that is too old
         raise ImportError(f"the loops of ratt_opt cannot be loaded here ({printable(str(error))}): {REMEDY}") from None
     loaded.sources.restype = ctypes.c_char_p
     if SOURCES.is_dir() and loaded.sources().decode() != _present():
         raise ImportError(f"the loops of ratt_opt were compiled from other sources: {REMEDY}")
     return loaded
+
+
+def _compiled() -> tuple[Path, Path]:
+    """The library and its record: beside this file, or, if a checkout without one hides an installation, that one's."""
+    for folder in () if LIBRARY.exists() else sys.path:
+        installed = Path(folder, __package__.replace(".", "/"))
+        if (installed / LIBRARY.name).exists():
+            return installed / LIBRARY.name, installed / RECORD.name
+    return LIBRARY, RECORD
 
 
 def _present() -> str:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 from ratt_opt.errors import InputError, printable
 from ratt_opt.studies.engine import SweepError, run
 from ratt_opt.studies.executors import open_executor
+from ratt_opt.studies.store import TABLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -56,8 +57,8 @@ def main(
                 old = options.accept_old_rows
                 results = run(study, folder, executor, trials=trials_wanted, accept_old_rows=old)
                 _deliver(results, entry, folder, latex=options.latex)
-        if after is not None and len(chosen) == len(entries):
-            after(options.out)
+        if after is not None:
+            _finish(after, options.out, [entry.study.name for entry in entries])
     except InputError as error:
         return _say(error, 2)
     except SweepError as error:
@@ -67,6 +68,15 @@ def main(
     except KeyboardInterrupt:
         return _say("interrupted; finished rows are kept, run the same command to resume", 130)
     return 0
+
+
+def _finish(after: Callable[[Path], object], out: Path, names: Sequence[str]) -> None:
+    """Renew what is made of all studies, so that it speaks of the tables beside it; say what is missing for it."""
+    missing = [name for name in names if not (out / name / TABLE).exists()]
+    if not missing:
+        after(out)
+        return
+    print(f"what is made of all studies waits for {', '.join(missing)}", file=sys.stderr)
 
 
 def _deliver(results: Results, entry: Entry, folder: Path, *, latex: bool) -> None:

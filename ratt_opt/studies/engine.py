@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_integer
 from ratt_opt.running.processes import local_processes
-from ratt_opt.studies.executors import has_workers
+from ratt_opt.studies.executors import has_workers, share_modules
 from ratt_opt.studies.progress import Progress
 from ratt_opt.studies.results import Results
 from ratt_opt.studies.store import open_journal, read_table
@@ -75,6 +75,7 @@ def run(
         check_integer("workers", workers, low=1)
     with _somewhere(folder) as kept, _running(executor, workers) as running:
         with open_journal(study, kept, accept_old_rows=accept_old_rows) as journal:
+            share_modules(running, study.modules())
             _run_missing(study, journal, running, wanted, progress or Progress())
             path = journal.write_table()
         return Results(study=study, rows=tuple(read_table(kept)), path=None if folder is None else path)
@@ -172,6 +173,7 @@ def _result(future: Future[dict[str, Cell]], study: Study, case: int, trial: int
     if isinstance(failure, BrokenProcessPool):
         raise SweepError(f"a worker process died; {AGAIN}") from None
     if isinstance(failure, ModuleNotFoundError):
-        raise SweepError(f"a worker lacks the package ({shown}); {AGAIN}") from None
+        rule = "install it there, or keep the study's functions in one file beside your script"
+        raise SweepError(f"a worker lacks a package ({shown}): {rule}; {AGAIN}") from None
     where = f"study {study.name}, case {study.cases[case].name}, trial {trial}"
     raise SweepError(f"{where} failed ({shown}); {AGAIN}") from failure

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.errors import InputError
 from ratt_opt.running.processes import local_processes
-from ratt_opt.studies.versions import VERSIONS
+from ratt_opt.studies.versions import VERSIONS, file_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from concurrent.futures import Executor
 
     from distributed import Client
 
-__all__ = ["dask_cluster", "has_workers", "local_processes", "open_executor"]
+__all__ = ["dask_cluster", "has_workers", "local_processes", "open_executor", "share_modules"]
 
 PATIENCE = 10
 """Seconds to wait for a scheduler to answer, and for its first worker."""
@@ -27,6 +27,20 @@ def open_executor(cluster: str | None, workers: int | None) -> Iterator[Executor
     """Open the Dask cluster at address ``cluster``, or ``workers`` local processes (one per core by default)."""
     with local_processes(workers) if cluster is None else dask_cluster(cluster) as executor:
         yield executor
+
+
+def share_modules(executor: Executor | None, names: Iterable[str]) -> None:
+    """Send the modules of a study that are one file each to the workers of a cluster, which may run in other folders.
+
+    Modules inside packages are not sent: workers have to have the package installed.
+    """
+    client = getattr(executor, "_client", None)
+    if client is None:
+        return
+    for name in names:
+        file = file_of(name)
+        if file and "." not in name and name != "__main__":  # functions of a script travel with their text
+            client.upload_file(file)
 
 
 def has_workers(executor: Executor) -> bool:

@@ -16,7 +16,7 @@ import ratt_opt
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["VERSIONS", "hash_of_modules", "hash_of_texts"]
+__all__ = ["VERSIONS", "file_of", "hash_of_modules", "hash_of_texts"]
 
 
 def _hash_of_code() -> str:
@@ -31,18 +31,18 @@ def _hash_of_code() -> str:
 
 def hash_of_modules(names: Iterable[str]) -> str:
     """A hash of the source of each module, in the order of the names."""
-    files = map(_file_of, names)
+    files = map(file_of, names)
     return " ".join(hashlib.sha256(Path(file).read_bytes()).hexdigest()[:12] if file else "none" for file in files)
 
 
 def hash_of_texts(functions: Iterable[object]) -> str:
     """A hash of the text of each function that no file holds (a notebook's), in their order; empty if there is none."""
-    texts = (_text(function) for function in functions if not _file_of(str(getattr(function, "__module__", None))))
+    texts = (_text(function) for function in functions if not file_of(str(getattr(function, "__module__", None))))
     return " ".join(hashlib.sha256(text.encode()).hexdigest()[:12] for text in texts)
 
 
-def _file_of(module: str) -> str | None:
-    """The file of a module; a notebook's, and what was typed, has none."""
+def file_of(module: str) -> str | None:
+    """Return the file of a module; a notebook's, and what was typed, has none."""
     try:
         return getattr(import_module(module), "__file__", None)
     except ModuleNotFoundError:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import InputError
+from ratt_opt.native import library
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.sources import HEADERS, LIBRARY, RECORD, SOURCES, TO_COMPILE, fault_of, fingerprint, record_of
 
@@ -41,7 +42,12 @@ def test_only_arrays_of_the_type_shape_and_layout_are_read():
         checked("x", locked, np.float64, (2, 3), written=True)
 
 
-LOAD = "from ratt_opt.native.library import library; print(library().sources().decode())"
+LOAD = (
+    "import sys; from pathlib import Path; "
+    "sys.path = [folder for folder in sys.path if not folder or not Path(folder, 'ratt_opt').is_dir()]; "
+    "from ratt_opt.native.library import library; print(library().sources().decode())"
+)
+"""In a folder whose package is the only one that is seen."""
 
 
 def loaded(folder: Path) -> subprocess.CompletedProcess[str]:
@@ -114,3 +120,17 @@ def test_stray_files_change_neither_the_fingerprint_nor_the_build(tmp_path: Path
 def test_every_source_is_listed() -> None:
     headers = {f"{name}.h" for name in HEADERS.split()}
     assert {file.name for file in SOURCES.iterdir()} == {file.name for file in TO_COMPILE} | headers
+
+
+def test_a_checkout_without_a_library_uses_that_of_the_installation_it_hides(tmp_path, monkeypatch):
+    checkout, installed = tmp_path / "checkout", tmp_path / "site" / "ratt_opt" / "native"
+    installed.mkdir(parents=True)
+    for file in (LIBRARY, RECORD):
+        shutil.copy(file, installed)
+    monkeypatch.setattr(library, "LIBRARY", checkout / LIBRARY.name)
+    monkeypatch.setattr(library, "RECORD", checkout / RECORD.name)
+    monkeypatch.setattr(sys, "path", [str(tmp_path), str(tmp_path / "site")])
+    assert library._compiled() == (installed / LIBRARY.name, installed / RECORD.name)
+    assert fault_of(*library._compiled()) == ""
+    monkeypatch.setattr(sys, "path", [str(tmp_path)])
+    assert library._compiled() == (checkout / LIBRARY.name, checkout / RECORD.name)

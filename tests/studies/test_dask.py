@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from contextlib import ExitStack, contextmanager
@@ -66,6 +67,38 @@ def test_the_papers_rows_are_the_same_bytes_on_a_cluster(tmp_path: Path) -> None
         with open_executor(address, None) as executor:
             table = run(SMALL, tmp_path / "dask", executor, trials=1, progress=Progress()).path
     assert table.read_bytes() == expected
+
+
+MINE = """
+from ratt_opt.studies import Case, Study
+
+def first_of_each(problem):
+    return [int(own[0]) for own in problem.choices]
+
+case = Case(n_robots=2, n_targets=2, alpha_s=1, alpha_c=0)
+STUDY = Study(name="mine", cases=(case,), planners=(first_of_each,), attackers=("worst",), metrics=("value",))
+"""
+
+
+def test_a_study_of_ones_own_runs_from_any_folder(tmp_path: Path) -> None:
+    """Neither the study's file nor its folder is where the workers look."""
+    mine, far = tmp_path / "mine", tmp_path / "far"
+    mine.mkdir()
+    far.mkdir()
+    (mine / "my_study.py").write_text(MINE)
+    run_it = (
+        "import sys; from my_study import STUDY; from ratt_opt.studies import run; "
+        "from ratt_opt.studies.executors import open_executor\n"
+        "with open_executor(sys.argv[1], None) as executor:\n"
+        "    print(len(run(STUDY, 'out', executor, trials=3).rows))"
+    )
+    with ExitStack() as stack:
+        address = stack.enter_context(scheduler(far))
+        stack.enter_context(workers(1, address, far))
+        environment = os.environ | {"PYTHONPATH": f"{mine}{os.pathsep}{ROOT}"}
+        command = [sys.executable, "-c", run_it, address]
+        done = subprocess.run(command, cwd=mine, env=environment, capture_output=True, text=True, check=False)
+    assert done.stdout == "3\n", done.stderr
 
 
 def test_a_lost_scheduler_is_one_line_and_the_sweep_resumes(tmp_path: Path) -> None:
