@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
-from time import monotonic
+from time import monotonic, process_time
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
@@ -94,9 +94,30 @@ Time that the searches leave comes on top."""
 CURVATURE_GAP = 0.1
 """A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
 or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
-GUARANTEES, QUICK_SECONDS = ("none", "quick", "full"), 2.0
-"""Modes of the guarantees, and seconds of the quick one.
-Of six bearing-only drones the curvature took half a minute, the plan a second."""
+GUARANTEES = ("none", "quick", "full")
+"""Modes of the guarantees."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QuickGuarantees:
+    """Time of quick guarantees: more of it narrows curvatures and lets a user wait.
+
+    Of six bearing-only drones the curvature took half a minute, the plan a second.
+
+    ``seconds`` : of the processor [s], so that a busy machine reports what an idle one does; ``slowest`` : seconds of
+    the clock for each of them at most, for functions that wait for something else.
+    """
+
+    seconds: float = 2.0
+    slowest: float = 8.0
+
+    def within(self, budget: Budget, busy: float) -> Budget:
+        """Return these seconds at the pace of the work so far, of which ``busy`` seconds were the processor's."""
+        pace = min(max(1.0, budget.elapsed / busy), self.slowest) if busy > 0 else 1.0
+        return Budget.inside(budget, self.seconds * pace)
+
+
+QUICK = QuickGuarantees()
 TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust_optimum")
 """Names of a report's own planners."""
 RANDOM_SEED = 0
@@ -140,8 +161,8 @@ def bound(
         function of the user's own the value of each element is computed whatever the limit: RATT's plan needs them
     certificate : file for the proof of the bracket, verified before it is named so; none if ``None``
     progress : called with one line of text whenever there is something to tell
-    guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds on them at
-        most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
+    guarantees : what was sure before planning, which rests on curvatures: ``"quick"`` spends two seconds of the
+        processor at most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
     planners : planners of your own by name, ``f(problem)`` or ``f(problem, world)`` as in missions: their plans are
         attacked too, and stand beside the others in every table and figure. They take what time they take
 
@@ -157,7 +178,7 @@ def bound(
     began = datetime.now(UTC)
     given = scenario_or_problem
     problem, source = _problem_of(given, objective, model)
-    whole, steps = Budget(time_limit), Steps(progress)
+    whole, steps, busy_since = Budget(time_limit), Steps(progress), process_time()
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
         # Asked for once: of a slow function of the user's own these are most of what a short limit has time for.
@@ -176,7 +197,7 @@ def bound(
         k = c = None
         sure: dict[str, Guarantee] = {}
         if guarantees != "none":
-            rest = Budget.inside(budget, QUICK_SECONDS) if guarantees == "quick" else budget
+            rest = QUICK.within(budget, process_time() - busy_since) if guarantees == "quick" else budget
             k, c = undisturbed(budget, lambda: _curvatures(problem, rest.part(CURVATURE_SHARE)))
             sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
     with steps("certificate"):
@@ -334,7 +355,7 @@ def _omitted_curvatures(guarantees: str, *, k: Curvature | None, c: Curvature | 
     else:
         omitted = {"total_curvature": "the criterion is submodular; curvature is given instead"}
     if guarantees == "quick" and found.stop is Stop.TIME:
-        omitted["a narrower curvature"] = f"guarantees are quick: {QUICK_SECONDS:g} s at most"
+        omitted["a narrower curvature"] = f"guarantees are quick: {QUICK.seconds:g} s at most"
     return omitted
 
 
