@@ -10,6 +10,7 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.attack.edge_cuts.smallest import bound_soon
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.graph.connected_partitions import LARGEST_LATTICE
 from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
@@ -46,13 +47,14 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
     worth; its guarantees hold for any number of baits. ``smallest_largest_group`` takes the time that the exact one
     needs, and :func:`ratt` an ``alpha_cs`` from there.
 
-    ``budget`` : an outer search's: if it is short a weaker bound is returned
+    ``budget`` : an outer search's: if it is short and robots are more than 14, a weaker bound is returned
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
     if check_problem(problem).threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
-    left = inf if budget is None else budget.seconds_left
+    is_small = problem.n_robots <= LARGEST_LATTICE  # a tenth of a second: the same however busy the machine is
+    left = inf if budget is None or is_small else budget.seconds_left
     return _worth(problem, Budget(None if isinf(left) else max(SIZE_SHARE * left, min(QUICK, HALF * left), AT_ONCE)))
 
 

@@ -82,16 +82,33 @@ def check(found, case):
 
 
 def compare(seed, largest):
-    case = graph, weights, sizes, protected, size = random_case(seed, largest=largest)
+    compare_case(random_case(seed, largest=largest))
+
+
+def compare_every_budget(seed, largest):
+    """Every size; and every number of links where each counts once."""
+    graph, weights, sizes, protected, _ = random_case(seed, largest=largest)
+    every = range(max(sizes), sum(sizes) + 1)
+    truth = {size: compare_case((graph, weights, sizes, protected, size)) for size in every}
+    if set(weights.values()) <= {1} and set(sizes) == {1}:
+        for k in range(graph.number_of_edges() + 1):
+            found = ro.smallest_largest_group(graph, k, protected_links=protected)
+            fits = [size for size in every if truth[size] is not None and truth[size] <= k]
+            assert found.lower == found.upper == min(fits), (seed, k)
+
+
+def compare_case(case):
+    graph, weights, sizes, protected, size = case
     truth = by_all_partitions(graph, weights, sizes, size, protected)
     given = {"weights": weights, "sizes": sizes, "protected_links": protected}
     if truth is None:
         with pytest.raises(ro.InputError, match="size must be at least"):
             ro.fewest_cuts(graph, size, **given)
-        return
+        return None
     found = ro.fewest_cuts(graph, size, **given)
-    assert (found.lower, found.upper, found.stop) == (truth, truth, ro.Stop.CLOSED), seed
+    assert (found.lower, found.upper, found.stop) == (truth, truth, ro.Stop.CLOSED)
     check(found, case)
+    return truth
 
 
 @pytest.mark.parametrize("first", range(0, 100, 25))
@@ -102,9 +119,9 @@ def test_all_partitions(first):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(1000, 2000, 100))
-def test_all_partitions_of_a_thousand_networks(first):
+def test_all_partitions_of_a_thousand_networks_for_every_budget(first):
     for seed in range(first, first + 100):
-        compare(seed, 10)
+        compare_every_budget(seed, 10)
 
 
 @pytest.mark.parametrize("seed", range(12))
