@@ -13,8 +13,8 @@ static int most_linked(const uint64_t *neighbours, const Branch *node, int64_t *
     return pick;
 }
 
-int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most, Branch stack[], int64_t *position,
-                    int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts) {
+int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most, Branch stack[],
+                    int64_t *position, int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts) {
     int64_t found = 0;
     while (steps-- > 0 && found < room) {
         if (position[1] == 0) {
