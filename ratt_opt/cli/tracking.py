@@ -47,8 +47,8 @@ def track(
         typer.Option("--objective", help="Criterion of plans; no logdet several steps ahead."),
     ] = "trace",
     motion: Annotated[
-        Literal["known velocity", "constant velocity", "coordinated turn"],
-        typer.Option("--motion", help="How targets move; of the last two velocities are estimated."),
+        Literal["known velocity", "constant velocity", "constant velocity 3d", "coordinated turn"],
+        typer.Option("--motion", help="How targets move; velocities are estimated but for the first."),
     ] = "known velocity",
     sensor: Annotated[
         str | None,
