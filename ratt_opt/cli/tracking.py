@@ -48,7 +48,7 @@ def track(
     ] = "trace",
     motion: Annotated[
         Literal["known velocity", "constant velocity", "constant velocity 3d", "coordinated turn"],
-        typer.Option("--motion", help="How targets move; velocities are estimated but for the first."),
+        typer.Option("--motion", help="How targets move; all estimate velocities, except the first."),
     ] = "known velocity",
     sensor: Annotated[
         str | None,
