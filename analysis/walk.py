@@ -3,8 +3,9 @@
 Run as ``python -m analysis.walk [--offline] [--out DIR]``. It clones the repository, installs the clone in a new
 environment, and does the jobs of ``docs/guides/three_jobs.md``: it writes the page's files, runs its commands outside
 of the clone, and checks what each job should leave. It prints the lines of code and the seconds of each job, and
-returns 1 if a job fails or takes more lines than ``AIMS`` says. With ``--offline`` the dependencies are those of the
-running environment; otherwise pip gets them.
+returns 1 if a job fails or takes more lines than ``AIMS`` says. Then it walks as a reviewer does (``REVIEW``): a
+certificate before the second checker, and the whole witnesses of the lines that fail. With ``--offline`` the
+dependencies are those of the running environment; otherwise pip gets them.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from typing import TYPE_CHECKING
 from analysis.fresh import installed, run_alone
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
-__all__ = ["AIMS", "CHECKS", "Job", "code_lines", "jobs_of", "main", "run_job"]
+__all__ = ["AIMS", "CHECKS", "REVIEW", "Job", "code_lines", "jobs_of", "main", "run_job"]
 
 ROOT = Path(__file__).parents[1]
 PAGE = Path("docs/guides/three_jobs.md")
@@ -38,6 +39,21 @@ JOB = re.compile(r"^## \d+\. (?P<title>.*?)\n(?P<body>.*?)(?=^## |\Z)", re.MULTI
 BLOCK = re.compile(
     r"(?:^<!-- file: (?P<file>\S+) -->\n)?^```(?:python|bash)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL
 )
+
+REVIEW = """
+ratt-opt new --robots 3 --targets 2 --sensing-attacks 1 --link-attacks 1 --seed 1 --out tiny.json
+ratt-opt bound tiny.json --out tiny
+ratt-opt verify tiny/certificate.json --explain
+python "$CLONE/tests/certificates/independent_checker.py" tiny/certificate.json
+python -c "
+from ratt_audit.appendix.roles import Side
+from ratt_audit.ledger import whole_instance
+for label in ('nd_p1d2v1_8', 'nd_p1d3v1_6', 'sub_p2d1v1_10'):
+    for side in Side:
+        print(label, whole_instance(label, side).whole.text())
+"
+"""
+"""Commands of a reviewer, in a folder of their own; ``CLONE`` is the copy of the repository."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +92,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             faults += fault is not None
             said = fault or f"done in {monotonic() - began:.0f} s"
             print(f"{job.title}: {job.lines} lines of code (at most {AIMS[job.name]}), {said}", flush=True)
+        began = monotonic()
+        fault = _failure(REVIEW, folder, commands, {"CLONE": str(place / "clone")})
+        faults += fault is not None
+        print(f"A reviewer: {fault or f'done in {monotonic() - began:.0f} s'}", flush=True)
     return int(faults > 0)
 
 
@@ -104,19 +124,24 @@ def _is_text(node: ast.AST) -> bool:
 
 def run_job(job: Job, folder: Path, commands: Path) -> str | None:
     """Do a job in ``folder`` with the programs of ``commands`` and return what is wrong, or ``None``."""
-    environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH", "VIRTUAL_ENV"}}
-    environment |= {"PATH": f"{commands}:{environment['PATH']}", "MPLBACKEND": "Agg"}
     for file, code in job.blocks:
         if file is not None:
             (folder / file).write_text(code, encoding="utf-8")
             continue
-        shell = ["bash", "-euo", "pipefail", "-c", code]
-        done = subprocess.run(shell, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-        if done.returncode:
-            return f"failed: {code.strip()}\n{done.stdout}{done.stderr}"
+        if fault := _failure(code, folder, commands, {}):
+            return fault
     if job.lines > AIMS[job.name]:
         return "too many lines"
     return CHECKS[job.name](folder)
+
+
+def _failure(code: str, folder: Path, commands: Path, more: Mapping[str, str]) -> str | None:
+    """Run commands with the programs of ``commands`` alone; return what they print if one fails."""
+    environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH", "VIRTUAL_ENV"}}
+    environment |= {"PATH": f"{commands}:{environment['PATH']}", "MPLBACKEND": "Agg", **more}
+    shell = ["bash", "-euo", "pipefail", "-c", code]
+    done = subprocess.run(shell, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    return f"failed: {code.strip()}\n{done.stdout}{done.stderr}" if done.returncode else None
 
 
 def _drones_are_planned(folder: Path) -> str | None:
