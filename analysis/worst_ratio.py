@@ -133,7 +133,7 @@ def _panel(axis: Axes, points: Sequence[Point]) -> None:
     axis.plot(grid, [one[k].pattern_free for k in grid], "k--", lw=1.4, label="pattern-free theorem", zorder=20)
     best = [max(p.theorem1 for p in points if p.curvature == k) for k in grid]
     axis.plot(grid, best, "k:", lw=1.8, label="Theorem 1 (its largest over these cases)", zorder=20)
-    axis.set(xlim=(0, 1), ylim=(0, 1.02), xlabel="curvature", ylabel="worst value / optimum")
+    axis.set(xlim=(0, 1), ylim=(0, 1.02), xlabel="curvature", ylabel="exact worst value of the plan / optimum")
     axis.spines[["top", "right"]].set_visible(False)
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8, loc="upper right")

@@ -84,7 +84,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         price = f"price without attack {curve[0].mean:+.1f} %"
         axes.set_title(f"{title}\n{price}\n{break_even(kept)}", fontsize="medium")
         axes.set_xlabel("robots blinded (links cut in proportion)")
-    figure.axes[0].set_ylabel("trace relative to Greedy [%]\n(lower is better)")
+    figure.axes[0].set_ylabel("trace of covariance against Greedy [%]\n(lower is better)")
     handles, labels = figure.axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)
     note = f"N=10, M=15, exact attack; mean of {len(kept)} paired trials with 95 % confidence band"

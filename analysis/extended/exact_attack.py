@@ -47,8 +47,8 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         }
         bars(axes[1, across], groups, excess)
         axes[0, across].set_title(f"N={n}, M={m}")
-    axes[0, 0].set_ylabel("trace per target [m²]\nunder the exact attack")
-    axes[1, 0].set_ylabel("above the proved\nlower bound [%]")
+    axes[0, 0].set_ylabel("trace of covariance per target [m²]\nunder the exact attack")
+    axes[1, 0].set_ylabel("trace above what is\nproved of every plan [%]")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)
     figure.supxlabel(f"mean of {len(kept[0])} paired trials with 95 % interval", fontsize="small")

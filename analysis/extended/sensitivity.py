@@ -76,7 +76,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
         }
         bars(axes, list(CASES), series)
         axes.set_title(f"{attacker.replace('_', '-')} attack")
-        axes.set_ylabel("trace above RATT's [%]")
+        axes.set_ylabel("trace of covariance above RATT's [%]")
     handles, labels = figure.axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=2, frameon=False)
     figure.supxlabel(

@@ -103,7 +103,7 @@ def draw(rows: Sequence[Mapping[str, str]], folder: Path) -> None:
     axes.axhspan(0.95, 1.10, color="#dddddd", zorder=0, label="0.95 to 1.10")
     labels = [re.sub(r"alpha_(\w)", r"$\\alpha_\1$", name).replace(" ", "\n") for name in names]
     axes.set_xticks(range(len(names)), labels, fontsize=8)
-    axes.set_ylabel("mean squared error / trace")
+    axes.set_ylabel("mean squared error /\ntrace of covariance")
     axes.legend(frameon=False, ncols=4, fontsize=8)
     save(figure, folder, STUDY.name)
 

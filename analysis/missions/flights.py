@@ -140,7 +140,7 @@ def draw_study(study: Study, rows: Sequence[Mapping[str, str]], folder: Path) ->
             series = {p: [estimate(column(k, f"{p}/{attacker}/rmse")) for _, k in kept] for p in planners}
             points(axes[down, across], groups, series)
             axes[down, across].set_title(f"N={n}, attacker: {attacker}")
-        axes[down, 0].set_ylabel("RMSE [m]")
+        axes[down, 0].set_ylabel("RMSE of target positions [m]")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper center", ncols=len(labels), frameon=False)
     trials = len(select(rows, case=study.cases[0].name))
