@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import combinations
 
 import networkx as nx
 import numpy as np
 import pytest
 
+import ratt_opt as ro
 from ratt_opt import smallest_largest_group
 from ratt_opt.attack.edge_cuts.elimination import Elimination, EliminationParams, TooManyStates
 from ratt_opt.attack.edge_cuts.network import CutNetwork
@@ -142,3 +144,47 @@ def test_a_budget_of_nodes_leaves_a_true_bracket():
     for nodes in (1, 10, 100):
         part = smallest_largest_group(ring, 4, max_nodes=nodes)
         assert part.lower <= whole.upper <= part.upper
+
+
+def least_by_first_groups(graph: nx.Graph, most: int) -> int:
+    """Fewest links for groups of at most ``most``: each connected group of the first robot left, then the others."""
+    order = list(nx.bfs_tree(graph, min(graph, key=graph.degree)))
+    place = {robot: k for k, robot in enumerate(order)}
+    near = [sum(1 << place[j] for j in graph[i]) for i in order]
+
+    def groups(group: int, border: int, left: int):
+        yield group
+        while border and group.bit_count() < most:
+            bit = border & -border
+            border ^= bit
+            left ^= bit
+            yield from groups(group | bit, (border | near[bit.bit_length() - 1]) & left & ~group, left)
+
+    @cache
+    def least(left: int) -> int:
+        if not left:
+            return 0
+        first = left & -left
+        best = graph.number_of_edges()
+        for group in groups(first, near[first.bit_length() - 1] & left, left ^ first):
+            rest = left & ~group
+            cut = sum((near[k] & rest).bit_count() for k in range(len(order)) if group >> k & 1)
+            if cut < best:
+                best = min(best, cut + least(rest))
+        return best
+
+    return least((1 << len(order)) - 1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_sparse_networks_agree_with_a_program_over_what_is_left(seed: int):
+    rng = np.random.default_rng(seed)
+    graph = nx.random_labeled_tree(18, seed=seed)
+    graph.add_edges_from((i, j) for i, j in rng.integers(0, 18, (5, 2)).tolist() if i != j)
+    for most in (3, 5):
+        truth = least_by_first_groups(graph, most)
+        found = ro.fewest_cuts(graph, most)
+        assert found.lower == found.upper == truth
+        network = CutNetwork.of(CommunicationGraph.from_networkx(graph, 18))
+        label = Elimination(network, EliminationParams(nodes=10**6)).least_cut(most, truth, Budget())
+        assert network.cut_of(label) == truth
