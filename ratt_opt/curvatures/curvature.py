@@ -57,8 +57,8 @@ class Curvature:
 
     ``element`` attains ``lower``: its marginal in ``smallest_context`` is the smallest found, and the one in
     ``largest_context`` the largest. ``useless`` : elements whose every marginal is computed as 0, left out by
-    definition (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within the
-    rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
+    definition (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within
+    the rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
     Both ends are moved outward by what the values that they are quotients of may have rounded.
     ``how`` : what the ends rest on. ``stop`` : why the search stopped; ``nodes`` : parts of the domain bounded.
     ``marginals`` : what is known of every element of the domain, in ascending order (its contexts name elements by
