@@ -268,7 +268,6 @@ def test_what_cannot_come_or_go_is_refused() -> None:
         (lambda: tracker.drop_target(0), r"target must be one of the targets \[1, 2\]; got 0"),
         (lambda: tracker.add_target("new"), "target must be a Target"),
         (lambda: tracker.lose(9), r"robot must be an integer in \[0, 1\]"),
-        (lambda: Tracker(random_scenario(2, 1, alpha_s=0, alpha_c=0, seed=0)).drop_target(0), "not be the last one"),
     ):
         with pytest.raises(InputError, match=text):
             call()

@@ -99,7 +99,7 @@ def test_the_page_shows_the_same(drawn):
     heard = sum(i in picture.seeing for i, _ in pairs)
     assert worst.count('class="watch"') == heard
     assert worst.count('class="watch vain"') == len(pairs) - heard
-    assert len(re.findall(r'class="field (?:seeing|lost|blinded)"', worst)) == 5
+    assert len(re.findall(r'class="field (?:seeing|lost|blinded)(?: rim)?"', worst)) == 5
     assert worst.count(", left unseen") == 2 * len(picture.unseen)  # the title, and what is read aloud
     for i in range(5):
         words = ", ".join(f"T{j}" for k, j in sorted(pairs) if k == i) or "no target"

@@ -138,7 +138,7 @@ def _fields(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> I
         heading, angle, reach = field_of(picture, i)
         kind = "blinded" if i in picture.attack.sensing else "seeing" if i in picture.best else "lost"
         r = reach * place.scale
-        kind += " wide" if angle > np.pi else ""  # it would flood the map: only its rim is drawn
+        kind += " rim" if angle > np.pi else ""  # it would flood the map: only its rim is drawn
         if angle >= 2 * np.pi:
             yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{r:.1f}" class="field {kind}"/>'
             continue
