@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -109,7 +110,8 @@ def test_formulas_are_typeset(site):
     texts = [(path, path.read_text(encoding="utf-8")) for path in site]
     typeset = {name: sum(t.count("<math") for path, t in texts if path.stem == name) for name in FORMULAS}
     assert typeset == FORMULAS
-    assert not [path for path, text in texts if "$\\" in text]
+    code = re.compile(r"<pre>.*?</pre>", re.DOTALL)  # programs may write formulas for figures
+    assert not [path for path, text in texts if "$\\" in code.sub("", text)]
 
 
 PHONE = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}

@@ -161,10 +161,10 @@ def test_fields_of_view_are_whole_and_do_not_flood_the_map(view, tmp_path):
     team = ro.limited_view_scenario(4, 3, alpha_s=1, alpha_c=2, seed=2, view=view, reach=20)
     ro.bound(team, guarantees="none", time_limit=5).save(tmp_path)
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
-    fields = re.findall(r'<(circle|path) ([^>]*)class="field (\w+)( wide)?"', text)
+    fields = re.findall(r'<(circle|path) ([^>]*)class="field (\w+)( rim)?"', text)
     assert len(fields) >= 2 * 4
-    assert all(bool(wide) is (view > 180) for *_, wide in fields)
-    assert ".field.wide{fill:none}" in text
+    assert all(bool(rim) is (view > 180) for *_, rim in fields)
+    assert ".field.rim{fill:none}" in text
     for kind, where, *_ in fields:
         numbers = [float(x) for x in re.findall(r"-?\d+\.\d", where)]
         x, y = numbers[:2]
