@@ -6,6 +6,7 @@ import inspect
 import random
 import signal
 import time
+import weakref
 from dataclasses import dataclass
 from functools import cache
 
@@ -287,7 +288,10 @@ class Interrupt:
         return self
 
     def _interrupt(self, _, frame):
-        if frame is not None and frame.f_code.co_name == "gc_callback":  # of Hypothesis; what is raised there is lost
+        # Python drops what is raised while it collects garbage: in a callback of Hypothesis, or of a weak reference.
+        if frame is not None and (
+            frame.f_code.co_name == "gc_callback" or frame.f_code.co_filename == weakref.__file__
+        ):
             signal.setitimer(signal.ITIMER_REAL, 0.01)
             return
         self.happened = time.process_time()
