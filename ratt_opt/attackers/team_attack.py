@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["TeamAttack", "last_stage"]
 
-COUNTED_NODES = 500_000
-"""Nodes of the smallest largest group if another search asks without a limit: some ten seconds."""
-
 
 def last_stage(task: AttackTask, search: Resumable) -> Stop:
     """Run a search, begun or new, that goes on where the memory finds it."""
@@ -84,7 +81,8 @@ class TeamAttack:
 
     def smallest_largest_group(self) -> None:
         """The smallest largest group, by prices of fewest cuts."""
-        most = COUNTED_NODES if self.is_inner and isinf(self.task.budget.seconds_left) else None
+        is_brief = self.is_inner and isinf(self.task.budget.seconds_left)
+        most = self.task.params.criterion.inner_nodes if is_brief else None
         with self.task.budget.stage(max_nodes=most) as part:
             found = largest_group_of(self._threat, part)
             self.task.offer(Attack(links=found.cut))

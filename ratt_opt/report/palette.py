@@ -24,6 +24,7 @@ __all__ = [
     "Look",
     "look_of",
     "looks_of",
+    "rgb",
 ]
 
 LEAST_COLOUR_DISTANCE = 20.0
@@ -75,3 +76,8 @@ def looks_of(planners: Sequence[str]) -> dict[str, Look]:
     """Return the looks of planners in one figure: those that are not the library's differ as long as looks last."""
     own = [name for name in planners if name not in PLANNERS]
     return {name: PLANNERS[name] if name in PLANNERS else OWN[own.index(name) % len(OWN)] for name in planners}
+
+
+def rgb(code: str) -> list[int]:
+    """Red, green and blue of a colour ``#rrggbb``, 0 to 255."""
+    return [int(code[k : k + 2], 16) for k in (1, 3, 5)]

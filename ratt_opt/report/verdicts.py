@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ratt_opt.errors import InputError
 
 __all__ = ["HEAD", "Checked", "VerdictTable"]
@@ -26,7 +28,7 @@ class Checked:
     holds: bool
 
     def __post_init__(self) -> None:
-        if type(self.holds).__name__ not in {"bool", "bool_"}:  # NumPy's comparisons are bool_ or, since 2.0, bool
+        if not isinstance(self.holds, (bool, np.bool_)):
             raise InputError("holds", "must be True or False", self.holds)
 
     @property

@@ -41,8 +41,9 @@ def read_attack_params(path: str | Path | None) -> AttackParams:
 def changed(params: DataclassInstance) -> dict[str, Any]:
     """Return the parameters that are not as by default, by their places: ``"annealing.moves"``."""
     places: dict[str, Any] = {}
+    default = type(params)()
     for one in fields(params):
-        value, usual = getattr(params, one.name), getattr(type(params)(), one.name)
+        value, usual = getattr(params, one.name), getattr(default, one.name)
         if is_dataclass(value) and not isinstance(value, type):
             places |= {f"{one.name}.{name}": inner for name, inner in changed(value).items()}
         elif value != usual:

@@ -46,7 +46,8 @@ class CriterionParams:
     ``dense`` : share of all links from which sizes say more than dual prices
     ``small`` : robots for which all sets are looked at before anything else
     ``starts`` : annealed attacks before the first threshold, for at most ``starts_for`` robots; the square beyond
-    ``inner_starts`` : inside another search; ``inner_nodes`` : of dual prices there, without limits
+    ``inner_starts`` : inside another search
+    ``inner_nodes`` : of dual prices, and of smallest largest groups, inside another search without limits
     """
 
     dense: float = 0.5

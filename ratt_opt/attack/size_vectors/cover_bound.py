@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.params.size_vectors import CoverParams
 from ratt_opt.attack.size_vectors.disjoint_sets import SetColumns
 from ratt_opt.budget import Stop
 from ratt_opt.highs import LinearProgram, rows_of
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.params import CoverParams
     from ratt_opt.attack.size_vectors.disjoint_sets import MaskArray, SetList
     from ratt_opt.budget import Budget
 
@@ -38,7 +38,6 @@ __all__ = ["CoverBound", "SetClasses", "cover_bound"]
 
 MARGIN = 1e-9
 """Room, relative to the threshold, beyond what is proved: against rounding in the costs."""
-DEFAULT = CoverParams()
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +139,7 @@ class CoverBound:
         )
 
 
-def cover_bound(classes: SetClasses, threshold: float, budget: Budget, params: CoverParams = DEFAULT) -> CoverBound:
+def cover_bound(classes: SetClasses, threshold: float, budget: Budget, params: CoverParams) -> CoverBound:
     """Bound every family of the classes; none of the lists is empty.
 
     Parameters

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.least_sets.sets_of_size import SetSearch
-from ratt_opt.attack.params.size_vectors import DisjointParams
 from ratt_opt.native.library import address, address_of, checked
 from ratt_opt.native.loops import ChoiceRecord, DisjointSetsRecord, loops
 
@@ -22,6 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.attack.params import DisjointParams
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
@@ -31,7 +31,6 @@ __all__ = ["MOST_ROBOTS", "DisjointSets", "Rest", "SetColumns", "SetFilter", "Se
 
 MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
-DEFAULT = DisjointParams()
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +175,7 @@ class DisjointSets:
     threshold : only families of a smaller largest value count
     """
 
-    def __init__(self, columns: SetColumns, rest: Rest, threshold: float, params: DisjointParams = DEFAULT) -> None:
+    def __init__(self, columns: SetColumns, rest: Rest, threshold: float, params: DisjointParams) -> None:
         self._params = params
         robots, classes = len(rest.single), len(columns.counts)
         self._columns = columns

@@ -14,7 +14,7 @@ import numpy as np
 from ratt_opt.errors import InputError
 from ratt_opt.missions.drawing.frames import frames_of
 from ratt_opt.missions.drawing.rerun_log import RerunLog
-from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET
+from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET, rgb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,7 +72,7 @@ def save_frames(
             name: writer.register_schema(name=name, encoding="jsonschema", data=b'{"type": "object"}')
             for name in sorted(set(TOPICS.values()))
         }
-        channels = {
+        rgb = {
             topic: writer.register_channel(topic=topic, message_encoding="json", schema_id=schemas[name])
             for topic, name in TOPICS.items()
         }
@@ -80,7 +80,7 @@ def save_frames(
             time = round(seconds * NANOSECONDS)
             for topic, message in {**_messages(frame, time), "/mission": row}.items():
                 data = json.dumps(message, allow_nan=False).encode()
-                writer.add_message(channel_id=channels[topic], log_time=time, publish_time=time, data=data)
+                writer.add_message(channel_id=rgb[topic], log_time=time, publish_time=time, data=data)
         writer.finish()
 
 
@@ -139,5 +139,5 @@ def _pose(x: float, y: float, angle: float = 0.0) -> dict[str, Any]:
 
 
 def _colour(code: str, opacity: float = 1.0) -> dict[str, float]:
-    red, green, blue = (int(code[k : k + 2], 16) / 255 for k in (1, 3, 5))
+    red, green, blue = (value / 255 for value in rgb(code))
     return {"r": red, "g": green, "b": blue, "a": opacity}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.errors import InputError
-from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET
+from ratt_opt.report.palette import BLINDED, CUT, LOST, SURVIVING, TARGET, rgb
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,17 +60,23 @@ class RerunLog:
         rr, log = self._rerun, self._stream.log
         self._stream.set_time("time", duration=seconds)
         robots = np.reshape(frame["robots"], (-1, 3))
-        colours = [_rgb(ROLES[role]) for role in frame["roles"]]
+        colours = [rgb(ROLES[role]) for role in frame["roles"]]
         names = frame.get("names") or [str(i) for i in range(len(robots))]
         log("map/robots", rr.Points2D(robots[:, :2], colors=colours, radii=self.marks.robot, labels=names))
         ahead = self.marks.heading * np.stack([np.cos(robots[:, 2]), np.sin(robots[:, 2])], axis=-1)
         log("map/headings", rr.Arrows2D(origins=robots[:, :2], vectors=ahead, colors=colours))
         for name, colour in (("links", LOST), ("cut", CUT)):
-            log(f"map/{name}", rr.LineStrips2D([robots[list(link), :2] for link in frame[name]], colors=[_rgb(colour)]))
+            log(
+                f"map/{name}",
+                rr.LineStrips2D([robots[list(link), :2] for link in frame[name]], colors=[rgb(colour)]),
+            )
         for name, places in (("truth", frame["targets"]), ("estimates", frame["estimates"])):
-            log(f"map/{name}", rr.Points2D(np.reshape(places, (-1, 2)), colors=[_rgb(TARGET)], radii=self.marks.target))
+            log(
+                f"map/{name}",
+                rr.Points2D(np.reshape(places, (-1, 2)), colors=[rgb(TARGET)], radii=self.marks.target),
+            )
         outlines = [self._outline(*pair) for pair in zip(frame["estimates"], frame["ellipses"], strict=True)]
-        log("map/uncertainty", rr.LineStrips2D(outlines, colors=[_rgb(TARGET)]))
+        log("map/uncertainty", rr.LineStrips2D(outlines, colors=[rgb(TARGET)]))
         for name, value in numbers.items():
             if value is not None:
                 log(f"numbers/{name}", rr.Scalars(float(value)))
@@ -87,8 +93,3 @@ class RerunLog:
         """Send on what was added; a file is whole then."""
         self._stream.flush()
         self._stream.disconnect()
-
-
-def _rgb(code: str) -> list[int]:
-    """Red, green and blue of ``#rrggbb``, 0 to 255."""
-    return [int(code[k : k + 2], 16) for k in (1, 3, 5)]
