@@ -19,9 +19,9 @@ import numpy as np
 from analysis.tables import print_table, write_csv
 from ratt_opt._rounding import up
 from ratt_opt.attack.edge_cuts.smallest import smallest_largest_group
+from ratt_opt.attack.exact import worst_case_attack
+from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack, random_attack
 from ratt_opt.attack.task import PlanValues
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, random_attack
 from ratt_opt.graph.threshold import ThresholdTest
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.setfunctions.criteria.registry import CRITERIA

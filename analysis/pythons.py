@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[1]
 PYTHONS = ("3.11", "3.12", "3.13")
 SAMPLE = (
     "tests/test_package.py", "tests/test_problem.py", "tests/test_rounding.py", "tests/cli", "tests/certificates",
-    "tests/scenario", "tests/setfunctions", "tests/solvers/test_ratt.py", "tests/attackers/test_exact.py",
+    "tests/scenario", "tests/setfunctions", "tests/solvers/test_ratt.py", "tests/attack/test_exact.py",
 )  # fmt: skip
 """Tests that touch the dependencies: compiled loops, solvers, exact arithmetic, files, figures, the command line."""
 COPIED = ("tests", "analysis", "docs", "README.md", "pyproject.toml")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt.attack.params import AttackParams
 from ratt_opt.attack.size_vectors.size_vector_search import stages_of
-from ratt_opt.attackers.schedule import criterion_stages, stages_by_values
+from ratt_opt.attack.stages.schedule import criterion_stages, stages_by_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

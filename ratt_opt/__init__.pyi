@@ -42,21 +42,21 @@ from .solvers.result import MaxMinResult as MaxMinResult
 from .solvers.undominated import undominated as undominated, UndominatedProblem as UndominatedProblem
 
 # == Attackers
-from .attackers.exact import worst_case_attack as worst_case_attack
-from .attackers.survey import attack_survey as attack_survey
-from .attackers.heuristics import bounded_rational_attack as bounded_rational_attack
-from .attackers.heuristics import greedy_attack as greedy_attack
-from .attackers.heuristics import random_attack as random_attack
+from .attack.exact import worst_case_attack as worst_case_attack
+from .attack.survey import attack_survey as attack_survey
+from .attack.heuristics import bounded_rational_attack as bounded_rational_attack
+from .attack.heuristics import greedy_attack as greedy_attack
+from .attack.heuristics import random_attack as random_attack
 from .attack.params import AttackParams as AttackParams
 from .attack.task import AttackResult as AttackResult
-from .attackers.criticality import (
+from .attack.protection.criticality import (
     criticality_ranking as criticality_ranking,
     Criticality as Criticality,
     breaking_budgets as breaking_budgets,
     BreakingBudget as BreakingBudget,
 )
-from .attackers.robot_choice import BestRobots as BestRobots, robots_to_protect as robots_to_protect
-from .attackers.link_choice.best_links import (
+from .attack.protection.robot_choice import BestRobots as BestRobots, robots_to_protect as robots_to_protect
+from .attack.protection.best_links import (
     links_to_protect as links_to_protect,
     links_to_add as links_to_add,
     BestLinks as BestLinks,

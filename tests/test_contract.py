@@ -126,17 +126,17 @@ def test_a_new_name_would_be_refused() -> None:
     """In imports and texts alike; of another family, and of one's own where it is not listed."""
     package = ro.__name__  # else this file would name the module
     for text in (
-        f"from {package}.attackers.exact import worst_case_attack",
-        f"import {package}.attackers.exact",
-        f"patch('{package}.attackers.exact.DEFAULT', ())",
-        f"PROGRAM = 'from {package}.attackers import exact'",
-        f"from {package}.attackers import (\n    exact,\n)",
-        "r" + "o.attackers.exact.DEFAULT",
+        f"from {package}.attack.exact import worst_case_attack",
+        f"import {package}.attack.exact",
+        f"patch('{package}.attack.exact.DEFAULT', ())",
+        f"PROGRAM = 'from {package}.attack import exact'",
+        f"from {package}.attack import (\n    exact,\n)",
+        "r" + "o.attack.exact.DEFAULT",
     ):
-        assert named_in(text) == {"attackers.exact"}
-    assert is_allowed("attackers/test_schedule.py", "attackers.exact")
-    assert not is_allowed("solvers/test_ratt.py", "attackers.exact")
-    assert not is_allowed("test_limits.py", "attackers.exact")
-    assert not is_allowed("attackers/test_schedule.py", "attackers.link_choice.upgrades")
+        assert named_in(text) == {"attack.exact"}
+    assert is_allowed("attack/test_exact.py", "attack.exact")
+    assert not is_allowed("solvers/test_ratt.py", "attack.exact")
+    assert not is_allowed("test_limits.py", "attack.exact")
+    assert not is_allowed("attack/test_exact.py", "attack.protection.upgrades")
     assert is_allowed("test_files.py", "_files")
     assert not is_allowed("cli/test_commands.py", "_files")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attack.heuristics import heuristic_result
 from ratt_opt.attack.task import PlanValues
-from ratt_opt.attackers.heuristics import heuristic_result
 from ratt_opt.bounds.guarantees import NON_DECREASING
 from ratt_opt.scenario.sensor import jacobian
 from ratt_opt.setfunctions.criteria import registry

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from tests.attackers.engine import searched
+from tests.attack.engine import searched
 from tests.strategies import OBJECTIVES, information_data, range_bearing
 
 LARGEST = 6

@@ -23,10 +23,10 @@ from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
 from ratt_opt.attack.bounds import forced_group_bound
 from ratt_opt.attack.edge_cuts.smallest import smallest_largest_group
+from ratt_opt.attack.exact import worst_case_attack
+from ratt_opt.attack.heuristics import greedy_attack
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues
 from ratt_opt.attack.team import Team
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics import greedy_attack
 from ratt_opt.budget import Budget
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.scenario.generator import random_scenario

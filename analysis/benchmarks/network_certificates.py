@@ -25,7 +25,7 @@ import ratt_opt as ro
 from analysis.benchmarks.networks import GAP, instances
 from analysis.tables import print_table
 from ratt_opt._rounding import relative_gap
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import Stop
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.verifier.lower import check_lower

@@ -34,7 +34,7 @@ GAP = 1e-6
 """Names a max-min search."""
 WARM, WARM_LARGE = 24, 64
 """Robots of the first problems of each objective, not counted: modules are loaded then. Large teams are asked
-who is inside first (``attack/pricing.py``)."""
+who is inside first (``attack/thresholds/pricing.py``)."""
 
 
 def instances(

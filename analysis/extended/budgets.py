@@ -9,7 +9,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.report.palette import PLANNERS, look_of
 from ratt_opt.solvers.ratt import greedy, ratt
 from ratt_opt.studies.cases import Case, Cell, Seeds

@@ -8,10 +8,10 @@ from unittest.mock import patch
 
 from analysis.schedule import TABLES
 from ratt_opt.attack import params as parameters
-from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.params import PackingParams, SetSearchParams
 from ratt_opt.attack.staging import without_stages
-from ratt_opt.attack.threshold_search import Answer, Threshold
+from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
+from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin import division, levels
 from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
 from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from analysis.limited_views.flights import PLANNERS, case_of, scenario_of
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.missions.players.planners import elements_of, get_planner, planned_with
 from ratt_opt.scenario.planner_world import scenario_world
 from ratt_opt.solvers.maxmin.solve import solve_maxmin

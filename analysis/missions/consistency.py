@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from analysis.paper.large_scale import STUDY as PAPER
-from ratt_opt.attackers.heuristics import bounded_rational_attack
+from ratt_opt.attack.heuristics import bounded_rational_attack
 from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import Linearisation, MissionModel, World

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import Budget, OutOfBudget, uninterrupted
 from ratt_opt.worst_ratio.ratio import class_rows
 from ratt_opt.worst_ratio.ratio_search import RatioSearch, skeleton

@@ -12,7 +12,7 @@ import numpy as np
 
 from ratt_audit.appendix.entry import Counted, EntryKind, EntryName, EnumeratedEntry
 from ratt_audit.engine.decide import Verdict
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.setfunctions.base import TableFunction

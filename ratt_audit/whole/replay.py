@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_audit.appendix.roles import Side
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import ProofError
 from ratt_opt.problem import Attack, Problem

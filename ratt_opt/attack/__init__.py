@@ -1,8 +1,8 @@
-"""The attack engine: which values an attack can push a team down to, decided threshold by threshold.
+"""The inner minimisation: the attack that leaves a plan least, exactly or with a bracket; and what to protect.
 
-Open ``threshold_search.py`` first: it asks thresholds of a decision, ``dual_prices`` (any network) or ``size_vectors``
-(complete graphs, and bounds on others). ``all_sets.py`` decides small teams by tables, ``listed_columns.py`` networks
-whose groups can be listed; ``bounds.py`` needs no search. ``pricing.py`` and ``least_sets`` answer what these ask about
-one group. ``edge_cuts`` is about cuts alone: the fewest for groups of a size, the smallest size for a number of them.
-``task.py`` is what all are given, ``staging.py`` runs schedules.
+Open ``exact.py`` first, then ``stages/schedule.py``: it says which stages run, when, and what share of the budget each
+has. ``thresholds`` decides which values an attack can push a team down to, ``size_vectors`` does so on complete graphs,
+``least_sets`` answers what both ask about one group, and ``bounds.py`` needs no search. ``edge_cuts`` is about cuts
+alone. ``heuristics.py`` finds first attacks, ``survey.py`` sets the exact attack beside them, and ``protection`` asks
+it many questions. ``task.py`` is what all are given, ``params`` are their numbers.
 """

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.pricing import Question
-from ratt_opt.attack.threshold_search import Threshold
+from ratt_opt.attack.thresholds.pricing import Question
+from ratt_opt.attack.thresholds.threshold_search import Threshold
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.group_tree import group_tree, sets_proof
 from ratt_opt.certificates.listed_columns import LinkDuals, duals_of_all_groups
@@ -26,7 +26,7 @@ from ratt_opt.errors import UndecidedError
 from ratt_opt.graph.communication import robots_of
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.pricing import PricingProblem
+    from ratt_opt.attack.thresholds.pricing import PricingProblem
     from ratt_opt.certificates.group_tree import GroupTree, Limit
     from ratt_opt.certificates.plan_sets import PlanSets
     from ratt_opt.graph.threat import Threat
@@ -72,7 +72,7 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 
 def _searched_duals(plan: PricingProblem, sets: PlanSets) -> LinkDuals:
     """Find the duals with which the attacker's search refutes the threshold."""
-    from ratt_opt.attack.dual_prices import ThresholdDecision
+    from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 
     seconds = seconds_left()
     budget = Budget(None if seconds == np.inf else seconds)

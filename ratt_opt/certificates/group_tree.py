@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.pricing import GroupSearch, Question
+from ratt_opt.attack.thresholds.pricing import GroupSearch, Question
 from ratt_opt.certificates.plan_sets import COVERING, NotClosedError
 from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.native.library import address
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attack.pricing import PricingProblem
+    from ratt_opt.attack.thresholds.pricing import PricingProblem
     from ratt_opt.certificates.plan_sets import PlanSets
 
 __all__ = ["GroupTree", "group_tree", "sets_proof"]

@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.columns import UNIT
-from ratt_opt.attack.listed_columns import ListedColumns
+from ratt_opt.attack.thresholds.columns import UNIT
+from ratt_opt.attack.thresholds.listed_columns import ListedColumns
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.verifier.work import seconds_left
 from ratt_opt.graph.communication import mask_of
@@ -17,7 +17,7 @@ from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
-    from ratt_opt.attack.pricing import PricingProblem
+    from ratt_opt.attack.thresholds.pricing import PricingProblem
     from ratt_opt.certificates.group_tree import Limit
 
 __all__ = ["LinkDuals", "duals_of_all_groups"]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.pricing import PricingProblem
 from ratt_opt.attack.team import LARGEST_DIMENSION, Links, Team
+from ratt_opt.attack.thresholds.pricing import PricingProblem
 from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.setfunctions.information import triangles

@@ -13,7 +13,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from ratt_opt.attackers.link_choice.best_links import BestLinks
+    from ratt_opt.attack.protection.best_links import BestLinks
     from ratt_opt.budget import Budget
 
 __all__ = ["attack"]
@@ -66,10 +66,10 @@ def attack(
     An interrupt (Ctrl-C) prints what was found so far and exits with 130.
     """
     from ratt_opt.attack.params.reading import changed, read_attack_params
-    from ratt_opt.attackers.criticality import breaking_budgets, criticality_ranking
-    from ratt_opt.attackers.link_choice.best_links import links_to_add, links_to_protect
-    from ratt_opt.attackers.robot_choice import robots_to_protect
-    from ratt_opt.attackers.survey import attack_survey
+    from ratt_opt.attack.protection.best_links import links_to_add, links_to_protect
+    from ratt_opt.attack.protection.criticality import breaking_budgets, criticality_ranking
+    from ratt_opt.attack.protection.robot_choice import robots_to_protect
+    from ratt_opt.attack.survey import attack_survey
     from ratt_opt.budget import Budget
     from ratt_opt.missions.players.planners import PLANNERS
     from ratt_opt.report.description import describe

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import readonly
+from ratt_opt.attack.exact import worst_case_attack
+from ratt_opt.attack.heuristics import heuristic_result
 from ratt_opt.attack.task import PlanValues
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics import heuristic_result
 from ratt_opt.main_job.result import PlanAssessment
 from ratt_opt.problem import Attack, Plan, Problem
 from ratt_opt.setfunctions.information import InformationObjective

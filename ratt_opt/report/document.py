@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.attack.protection.best_links import BestLinks
+    from ratt_opt.attack.protection.criticality import BreakingBudget, Criticality
+    from ratt_opt.attack.protection.robot_choice import BestRobots
     from ratt_opt.attack.task import AttackResult
-    from ratt_opt.attackers.criticality import BreakingBudget, Criticality
-    from ratt_opt.attackers.link_choice.best_links import BestLinks
-    from ratt_opt.attackers.robot_choice import BestRobots
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.findings import AssessedPlan, Findings

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
     from rich.table import Table
 
+    from ratt_opt.attack.protection.best_links import BestLinks
+    from ratt_opt.attack.protection.criticality import BreakingBudget, Criticality
+    from ratt_opt.attack.protection.robot_choice import BestRobots
     from ratt_opt.attack.task import AttackResult
-    from ratt_opt.attackers.criticality import BreakingBudget, Criticality
-    from ratt_opt.attackers.link_choice.best_links import BestLinks
-    from ratt_opt.attackers.robot_choice import BestRobots
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.findings import Findings
     from ratt_opt.problem import Attack

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.attackers.exact import worst_case_attack_unrounded
+from ratt_opt.attack.exact import worst_case_attack_unrounded
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError

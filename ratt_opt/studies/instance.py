@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import networkx as nx
 
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, random_attack
+from ratt_opt.attack.exact import worst_case_attack
+from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack, random_attack
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.attackers import attack_of

@@ -17,7 +17,7 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, readonly
 from ratt_opt._values import ByValue
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.graph.survivor_sizes import caa

@@ -11,7 +11,7 @@ import pytest
 
 from ratt_opt import InputError, bound, load_scenario, verify_certificate
 from ratt_opt.cli import run
-from tests.attackers.engine import COMMAND
+from tests.attack.engine import COMMAND
 from tests.certificates import engine as certifying
 from tests.certificates.engine import UndecidedError
 from tests.interrupts import interrupted_at

@@ -9,7 +9,7 @@ import numpy as np
 import ratt_opt as ro
 from ratt_opt.graph.few_cuts import attacks_are_few
 from ratt_opt.graph.threat import Threat
-from tests.attackers.test_few_attacks import sparse_network
+from tests.attack.stages.test_few_attacks import sparse_network
 
 
 def test_two_cuts_and_a_limit():

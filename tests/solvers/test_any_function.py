@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import ratt_opt as ro
-from tests.attackers.engine import NO_TABLES
+from tests.attack.engine import NO_TABLES
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.solvers.maxmin.engine import NO_PLANS_LISTED, open_nodes
 from tests.strategies import (

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.edge_cuts.program import chosen_labels
-from ratt_opt.attack.exact_cover import ExactCover, packed
+from ratt_opt.attack.thresholds.exact_cover import ExactCover, packed
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:

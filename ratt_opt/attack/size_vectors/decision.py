@@ -17,7 +17,7 @@ from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.size_vectors.disjoint_sets import MOST_ROBOTS
 from ratt_opt.attack.size_vectors.family_search import FamilySearch, SetLists
-from ratt_opt.attack.threshold_search import Answer, Threshold
+from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

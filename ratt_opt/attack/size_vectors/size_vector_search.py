@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.dual_prices import ThresholdDecision
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
-from ratt_opt.attack.pricing import PricingProblem
 from ratt_opt.attack.size_vectors.decision import SizeDecision
 from ratt_opt.attack.size_vectors.weak_families import WeakFamilies, weakest_of
 from ratt_opt.attack.staging import Stage, run_stages
 from ratt_opt.attack.team import Links
-from ratt_opt.attack.threshold_search import Threshold, ThresholdSearch
+from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
+from ratt_opt.attack.thresholds.pricing import PricingProblem
+from ratt_opt.attack.thresholds.threshold_search import Threshold, ThresholdSearch
 from ratt_opt.budget import Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import (

@@ -9,7 +9,7 @@ import networkx as nx
 from ordered_set import OrderedSet
 from stonesoup.base import Base, Property
 
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.interop.stonesoup.manager import RobustSensorManager  # noqa: TC001  (a property's type)
 from ratt_opt.interop.stonesoup.network import Network
 

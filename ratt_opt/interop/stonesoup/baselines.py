@@ -14,7 +14,7 @@ from stonesoup.sensormanager.reward import RewardFunction
 from stonesoup.types.prediction import GaussianStatePrediction
 from stonesoup.types.track import Track
 
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.errors import InputError
 from ratt_opt.interop.stonesoup.nodes import TeamManager, nodes_of, options
 from ratt_opt.interop.stonesoup.problem import PlanningStep, TeamProblem

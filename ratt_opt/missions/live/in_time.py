@@ -15,7 +15,7 @@ from threading import Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.missions.players.planners import AnytimePlanner, elements_of, planned_with
 from ratt_opt.solvers.ratt import ratt

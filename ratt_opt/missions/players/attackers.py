@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.all_sets import LARGEST_VALUED
-from ratt_opt.attackers.exact import worst_case_attack
-from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack, random_attack
+from ratt_opt.attack.exact import worst_case_attack
+from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack, random_attack
+from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import get_player

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.solvers.ratt import equivalent_sensing_attacks

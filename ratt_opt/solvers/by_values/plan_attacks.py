@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.exact import worst_case_attack_unrounded
+from ratt_opt.attack.stages.any_function import metered_problem
 from ratt_opt.attack.task import AttackMemory
-from ratt_opt.attackers.any_function import metered_problem
-from ratt_opt.attackers.exact import worst_case_attack_unrounded
 from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:

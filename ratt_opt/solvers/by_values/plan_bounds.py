@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attackers.any_function import metered_problem
-from ratt_opt.attackers.exact import worst_case_attack_unrounded
+from ratt_opt.attack.exact import worst_case_attack_unrounded
+from ratt_opt.attack.stages.any_function import metered_problem
 from ratt_opt.bounds.guarantees import pattern_free_bound
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.annealing import AnnealedAttacks
+from ratt_opt.attack.exact import worst_case_attack_unrounded
+from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
 from ratt_opt.attack.task import AttackBracket, AttackMemory
 from ratt_opt.attack.team import Team, has_native_kernel
-from ratt_opt.attackers.exact import worst_case_attack_unrounded
-from ratt_opt.attackers.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack

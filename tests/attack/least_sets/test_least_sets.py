@@ -18,7 +18,7 @@ from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
 from ratt_opt.attack.params import SetSearchParams
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
-from tests.attackers.engine import NO_LISTS
+from tests.attack.engine import NO_LISTS
 from tests.strategies import OBJECTIVES, information_data, range_bearing
 from tests.ways import with_params
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt.attack.columns import Columns, IntegerDuals
 from ratt_opt.attack.least_sets.max_cardinality import NONE, MaxCardinalityBelow
 from ratt_opt.attack.team import Team
+from ratt_opt.attack.thresholds.columns import Columns, IntegerDuals
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat

@@ -6,7 +6,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt import AttackParams
 from ratt_opt.budget import Budget
-from tests.attackers.engine import FAMILIES, NO_LISTS, PACKED, searched
+from tests.attack.engine import FAMILIES, NO_LISTS, PACKED, searched
 from tests.brackets import attained, attains, worst_value
 from tests.interrupts import interrupted_at
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from tests.attackers.engine import NO_TABLES
+from tests.attack.engine import NO_TABLES
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.solvers.maxmin.engine import NO_PLANS_LISTED
 from tests.strategies import Submodular

@@ -9,7 +9,7 @@ from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.adversary import QUICK_SHARE, PlanIndependentAttacks
 from ratt_opt.solvers.maxmin.incumbent import IMPROVED_SHARE, Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from tests.attackers.engine import exchanges_near, first_attack
+from tests.attack.engine import exchanges_near, first_attack
 from tests.brackets import attains
 
 SECONDS = 1000.0

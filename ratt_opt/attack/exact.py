@@ -1,0 +1,201 @@
+"""The exact worst-case attack on a plan, with a bracket at any time."""
+
+from __future__ import annotations
+
+import math
+from numbers import Real
+from typing import TYPE_CHECKING
+
+from ratt_opt.attack import params as parameters
+from ratt_opt.attack.heuristics import bounded_rational_attack
+from ratt_opt.attack.stages.any_function import metered_problem
+from ratt_opt.attack.stages.attack_tree import AttackTree
+from ratt_opt.attack.stages.criterion_attack import CriterionAttack
+from ratt_opt.attack.stages.schedule import criterion_stages, stages_by_values
+from ratt_opt.attack.stages.team_attack import TeamAttack, last_stage
+from ratt_opt.attack.staging import recorded, run_stages
+from ratt_opt.attack.task import (
+    AttackBracket,
+    AttackMemory,
+    AttackResult,
+    AttackTask,
+    CutoffReached,
+    PlanValues,
+    StageRecord,
+    widened_result,
+)
+from ratt_opt.attack.thresholds.all_sets import can_enumerate_subsets
+from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
+from ratt_opt.errors import InputError
+from ratt_opt.problem import Attack
+from ratt_opt.running.progress import Step
+from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.metered import unmetered
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ratt_opt.attack.params import AttackParams
+    from ratt_opt.problem import Problem
+
+__all__ = ["worst_case_attack", "worst_case_attack_unrounded"]
+
+
+UNDONE = {Stop.TIME, Stop.NODES, Stop.EVALUATIONS, Stop.HEURISTIC}
+
+
+@interruptible
+@Step("the worst attack")
+def worst_case_attack(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    max_nodes: int | None = None,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
+    aim: float = -math.inf,
+    known: Attack | None = None,
+    memory: AttackMemory | None = None,
+    params: AttackParams | None = None,
+) -> AttackResult:
+    """Find the attack that hurts one plan most.
+
+    Stages run one after the other until the bracket is closed or the budget is spent. The page
+    ``docs/contributors/engine.md`` lists them, their conditions and shares of the budget; ``stages`` of the result
+    says which ran. What a node is depends on the stage: a threshold, a branch, a set of robots.
+
+    - Up to 24 robots (20 for functions of your own, and where targets are not in the plane) all sets of robots are
+      looked at. That closes any network within seconds. For a function of your own it relies on nothing, once all
+      sets are valued.
+    - Larger teams rely on a non-decreasing objective. The three criteria are; functions of your own are not checked.
+    - Give a limit for more than 24 robots: on networks of 50 some attacks take hours to close. If another search asks
+      without a limit, dual prices stop after half a million nodes.
+    - Without a limit ``HEURISTIC`` says that no stage is left that could close the bracket. That happens to functions
+      and criteria of your own, and on complete graphs with very many vectors of group sizes.
+
+    A keyboard interrupt or a spent budget returns the bracket reached. If the user interrupts before any attack is
+    known, the result is the team without an attack and, as lower end, the value of no measurement.
+
+    Parameters
+    ----------
+    problem : N robots, E elements
+    elements : (N,) element chosen for each robot
+    max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default
+    max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
+    budget : an outer search's budget: its seconds and interrupts count too
+    aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
+    known : an attack to begin with; the one found is no better for the team
+    memory : of earlier attacks on this plan that a budget ended: both ends are taken from there, and prices, or
+        partitions, are gone on with; what this one finds out is left there
+    params : of the stages and their algorithms: they decide how soon the bracket closes, not whether it holds
+
+    Raises
+    ------
+    InputError : an element is not its robot's, ``elements`` has the wrong shape, a budget is not a number >= 0, ``aim``
+        is no number, ``known`` is not within the budgets, or ``memory`` is of another plan.
+
+    Source: ratt.tex, inner problem of eqn:resi_target_prob.
+    """
+    memory = AttackMemory() if memory is None else memory
+    found = worst_case_attack_unrounded(
+        problem,
+        elements,
+        max_nodes=max_nodes,
+        time_limit=time_limit,
+        max_evaluations=max_evaluations,
+        budget=budget,
+        aim=aim,
+        known=known,
+        memory=memory,
+        params=params,
+    )
+    return widened_result(memory.searched_of(problem), problem.check_plan(elements), found)
+
+
+def worst_case_attack_unrounded(
+    problem: Problem,
+    elements: ArrayLike,
+    *,
+    max_nodes: int | None = None,
+    time_limit: float | None = None,
+    max_evaluations: int | None = None,
+    budget: Budget | None = None,
+    aim: float = -math.inf,
+    known: Attack | None = None,
+    memory: AttackMemory | None = None,
+    params: AttackParams | None = None,
+) -> AttackResult:
+    """:func:`worst_case_attack` for other searches: both ends as they were computed."""
+    own = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
+    if isinstance(aim, bool) or not isinstance(aim, Real) or math.isnan(aim):
+        raise InputError("aim", "must be a number", aim)
+    values = PlanValues(problem, elements)
+    memory = AttackMemory() if memory is None else memory
+    memory.check(problem, values.plan)
+    problem = memory.searched_of(problem)
+    values.objective = problem.objective
+    records: list[StageRecord] = []
+    try:
+        asked = problem
+        if not isinstance(problem.objective, InformationObjective):
+            asked = metered_problem(problem, own)
+            values.objective = asked.objective
+        if memory.bracket is None:
+            first = bounded_rational_attack(asked, values.plan)
+            is_exact = problem.evaluation_error == 0.0  # then the end was not moved
+            upper = first.upper if is_exact else asked.team_value(values.plan, first.attack)
+            memory.bracket = AttackBracket(first.attack, upper, first.lower, problem.objective.rounding)
+            values.evaluations = first.evaluations
+        memory.bracket.aim = aim
+        if known is not None:
+            memory.bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
+        memory.bracket.check_aim()
+        is_inner = budget is not None or max_nodes is not None
+        task = AttackTask(
+            asked, values, memory.bracket, own, memory, records, parameters.DEFAULT if params is None else params
+        )
+        stop = _search(task, is_inner=is_inner)
+    except OutOfBudget as out:
+        stop = out.stop
+    except CutoffReached:
+        stop = Stop.GAP
+    except KeyboardInterrupt:
+        stop = own.interrupt()
+    if memory.bracket is not None and memory.bracket.is_closed and stop in UNDONE:
+        stop = Stop.CLOSED  # by what was known before the budget ended
+    if (bracket := memory.bracket) is None:  # what no attack at all gives
+        values.objective = unmetered(problem.objective)
+        bracket = AttackBracket(Attack(), _unattacked(problem, values), values(()))
+    attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
+    return AttackResult(
+        attack=attack,
+        lower=lower,
+        upper=upper,
+        stop=stop,
+        evaluations=values.evaluations,
+        nodes=own.nodes,
+        stages=tuple(records),
+    )
+
+
+def _unattacked(problem: Problem, values: PlanValues) -> float:
+    return max(values(group) for group in problem.communication.groups())
+
+
+def _search(task: AttackTask, *, is_inner: bool) -> Stop:
+    is_criterion = isinstance(task.problem.objective, InformationObjective)
+    begun = task.memory.search
+    if isinstance(begun, AttackTree):
+        goes_on = is_criterion or not can_enumerate_subsets(task)
+    else:
+        goes_on = task.budget.seconds_left <= task.params.stages.renewed * task.memory.seconds
+    if begun is not None and goes_on:
+        with recorded(task, "earlier search, resumed"):
+            return last_stage(task, begun)
+    task.memory.seconds = task.budget.seconds_left
+    if is_criterion:
+        return (
+            run_stages(criterion_stages(task.params.stages), CriterionAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
+        )
+    return run_stages(stages_by_values(task.params.stages), TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
