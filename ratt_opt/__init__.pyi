@@ -115,6 +115,7 @@ from .missions.bags.loop import BagReplay as BagReplay, replay_bag as replay_bag
 
 # == Studies
 from . import studies as studies
+from . import planners as planners
 
 # == Guarantees and bounds
 from .bounds.guarantees import (

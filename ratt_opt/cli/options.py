@@ -27,7 +27,21 @@ if TYPE_CHECKING:
 else:
     Objective = Literal[tuple(CLASSES)]  # the choices that help and refusals list
 
-Planner = Literal["ratt", "refined", "maxmin", "greedy", "myopic", "nonrobust_optimum", "random"]
+Planner = Literal[
+    "ratt",
+    "refined",
+    "maxmin",
+    "greedy",
+    "myopic",
+    "nonrobust_optimum",
+    "random",
+    "resilient_selection",
+    "sensing_only",
+    "uniform_buckets",
+    "partitioned_robust",
+    "sequential_greedy",
+    "resource_aware_greedy",
+]
 
 TIME_LIMIT = 60.0
 """Seconds for all searches of a command, unless the user says otherwise: as in ``ratt_opt.bound``."""

@@ -15,6 +15,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.missions.players.attackers import attack_of
 from ratt_opt.missions.players.named import get_player
 from ratt_opt.missions.players.planners import RefinedPlanner, elements_of, planned_with
+from ratt_opt.planners.registry import PUBLISHED, Published
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.generator import random_scenario
 from ratt_opt.scenario.model import Scenario
@@ -170,6 +171,10 @@ class Instance:
         return simulate_tracking(self.scenario, plan, group, seed=self.seeds.simulation, draws=draws)
 
 
+def _published(planner: Published) -> Callable[[Instance], IntArray]:
+    return lambda instance: planner.plan(instance.problem).elements
+
+
 PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
     "maxmin": lambda instance: instance.optimum.elements,
     "ratt": lambda instance: ratt(instance.problem).elements,
@@ -178,6 +183,7 @@ PLANNERS: dict[str, Callable[[Instance], IntArray]] = {
     "myopic": lambda instance: myopic(instance.problem).elements,
     "refined": lambda instance: RefinedPlanner()(instance.problem).elements,
     "random": lambda instance: random_plan(instance.problem, seed=instance.seeds.planner).elements,
+    **{name: _published(planner) for name, planner in PUBLISHED.items() if planner.takes_any},
 }
 """The planners of studies by name. ``refined`` is limited by kicks, so that rows are reproducible."""
 

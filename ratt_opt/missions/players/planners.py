@@ -12,6 +12,7 @@ from ratt_opt._validation import IntArray, check_integer
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import get_player
+from ratt_opt.planners.registry import PUBLISHED
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
 from ratt_opt.solvers.refined import RefinedPlan, refined
@@ -104,7 +105,9 @@ PLANNERS: dict[str, Planner] = {
     "myopic": myopic,
     "nonrobust_optimum": nonrobust_optimum,
     "random": RandomPlanner(),
+    **{name: published.plan for name, published in PUBLISHED.items() if published.takes_any},
 }
+"""The planners of missions by name: the library's, and published ones."""
 
 
 def get_planner(planner: str | Planner) -> Planner:
