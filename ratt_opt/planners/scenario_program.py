@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._validation import IntArray, check_number, readonly
-from ratt_opt.attackers.exact import worst_case_attack
+from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.budget import Budget, Stop, interruptible
 from ratt_opt.errors import InputError
 from ratt_opt.highs import silent_solver
