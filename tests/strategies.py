@@ -24,8 +24,20 @@ from ratt_opt import (
     TableFunction,
     TraceObjective,
 )
+from ratt_opt.setfunctions.information import InformationObjective
 
 OBJECTIVES = {"trace": TraceObjective, "logdet": LogDetObjective, "maxeig": MaxEigenvalueObjective}
+
+
+class OwnTrace(InformationObjective):
+    """The trace as a criterion of one's own: nothing but its formula is known."""
+
+    def criterion(self, posterior_information):
+        return self.weights * np.trace(np.linalg.inv(posterior_information), axis1=-2, axis2=-1)
+
+    def gradient(self, posterior_information):
+        covariance = np.linalg.inv(posterior_information)
+        return self.weights[:, None, None] * (covariance @ covariance)
 
 
 def information_data(rng, n_elements, n_targets, dimension=2):

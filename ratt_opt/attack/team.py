@@ -71,7 +71,7 @@ WORK = WorkParams()
 def work_of_value(objective: InformationObjective) -> int:
     """Estimate the multiplications for one value of a set of robots."""
     d = objective.dimension
-    by_rotations = d > PLANE and objective.compiled_code == MaxEigenvalueObjective.compiled_code
+    by_rotations = d > PLANE and objective.compiled_code == MaxEigenvalueObjective.native_kernel
     return objective.n_targets * d**3 * (WORK.rotations if by_rotations else 1)
 
 

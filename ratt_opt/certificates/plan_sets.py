@@ -10,7 +10,6 @@ import numpy as np
 
 from ratt_opt.attack.team import LARGEST_DIMENSION, Links, Team
 from ratt_opt.attack.thresholds.pricing import PricingProblem
-from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.setfunctions.information import triangles
 
@@ -61,7 +60,7 @@ class PlanSets:
 def _team(objective: InformationObjective, elements: IntArray) -> Team:
     """The plan's robots for compiled loops: these have criteria of whole states, in whatever coordinates."""
     prior, information = objective.prior_information, objective.information[elements]
-    if isinstance(objective, StateCriterion) and objective.output is not None:
+    if objective.output is not None:
         basis = _counted_coordinates(objective.prior, objective.output)
         prior, information = (np.swapaxes(basis, -1, -2) @ part @ basis for part in (prior, information))
         objective = CRITERIA[objective.name](objective.prior, objective.information[elements], objective.weights)

@@ -28,11 +28,11 @@ import numpy as np
 
 from ratt_opt.coordinates.changed import ChangedProblem, change_error, product_error, sizes_of
 from ratt_opt.problem import check_problem
+from ratt_opt.setfunctions.checked_matrices import positive_parts
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
-from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
-from ratt_opt.setfunctions.information import positive_parts, symmetric_inverse
+from ratt_opt.setfunctions.information import symmetric_inverse
 from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
@@ -133,8 +133,8 @@ def _change(objective: InformationObjective, measured: _Coordinates) -> _Change 
     """The criterion in the measured coordinates, or in such that it is one of their whole state."""
     if type(objective) is LogDetObjective:
         return _in_coordinates(objective, LogDetObjective, measured), measured, None
-    kind = next((kind for kind in KINDS if type(objective) in (kind, kind.of_part)), None)
-    if kind is None or not isinstance(objective, StateCriterion):
+    kind = type(objective)
+    if kind not in KINDS:
         return None
     output = np.eye(objective.dimension) if objective.output is None else objective.output
     mixed = measured.turned @ objective.prior @ measured.basis

@@ -114,8 +114,7 @@ def _changed(objective: InformationObjective, root: FloatArray) -> InformationOb
     part: dict[str, FloatArray] = {}
     kind = next((kind for kind in KINDS if isinstance(objective, kind)), LogDetObjective)
     if kind is not LogDetObjective:
-        given = getattr(objective, "output", None)
-        part["output"] = root if given is None else given @ root
+        part["output"] = root if objective.output is None else objective.output @ root
     changed: InformationObjective = kind(prior, information, objective.weights, **part)
     return changed
 

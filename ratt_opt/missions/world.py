@@ -24,8 +24,8 @@ from ratt_opt.missions.models.sensors import check_sensor, robots_by_sensor, sen
 from ratt_opt.missions.models.targets import TargetMotion, check_motion, target_motion
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.model import Scenario
+from ratt_opt.setfunctions.checked_matrices import WIDEST
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, get_criterion
-from ratt_opt.setfunctions.information import WIDEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -91,41 +91,16 @@ class SeparableMinorant:
     absent: FloatArray
 
 
+FORMULA = frozenset({"criterion", "value", "gradient"})
+"""Parts that are the formula of a criterion; all others hold for that formula."""
+
+
 def lacking(criterion: object, part: str, what: str) -> InputError:
     """The error for a criterion that lacks a part which is needed."""
     return InputError("objective", f"must define {part}, the {what}", type(criterion).__name__)
 
 
-class ProofParts(SetFunction):
-    """Parts that the library's own criteria have; another may, if it is to be relaxed or certified."""
-
-    __slots__ = ()
-
-    def conic_value(self, posterior: Sequence[Any]) -> Any:  # noqa: ARG002
-        """The value as a concave cvxpy expression of each target's information: M expressions of shape (d, d)."""
-        raise lacking(self, "conic_value(posterior)", "value as a concave cvxpy expression")
-
-    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002
-        """Return the record of the tangent at ``point`` (M, d, d), from which the verifier derives its bound."""
-        raise lacking(self, "fenchel_point(point, target)", "tangent as the verifier knows it")
-
-    @property
-    def stated(self) -> dict[str, Any]:
-        """Further fields of the criterion in a certificate's problem record, by name, as plain data."""
-        return {}
-
-    @property
-    def prior_eigenvalue(self) -> float | None:
-        """An irrational number of the prior that a certificate states as a narrow range, if it needs one."""
-        return None
-
-    @property
-    def verifier_averages(self) -> bool:
-        """True if the verifier bounds values, and so averages of them; else it compares each value with a level."""
-        return True
-
-
-class CriterionParts(ProofParts):
+class CriterionParts(SetFunction):
     """The parts of a criterion of posterior information ``L`` (M, d, d): its value, and what theory knows of it.
 
     A subclass defines :meth:`criterion` (or :meth:`value`) and :meth:`gradient`; the rest has generic stand-ins.
@@ -141,17 +116,19 @@ class CriterionParts(ProofParts):
     name: ClassVar[str] = ""
     """Name in files, tables and on the command line; empty for a criterion that is not registered."""
     unit: ClassVar[str] = ""
-    compiled_code: ClassVar[int | None] = None
+    native_kernel: ClassVar[int | None] = None
     """Number of the criterion in the compiled code (``native/src/team.h``), if it is there."""
 
     is_least_of_targets: ClassVar[bool] = False
     """True if the value is that of the target where it is least, as with the worst target's criterion."""
 
     def __init_subclass__(cls) -> None:
+        """Refuse another formula below a criterion of the library: tangents and other parts would still be its own."""
         super().__init_subclass__()
-        if {"criterion", "value", "gradient"} & set(vars(cls)):
-            for part in OPTIONAL_PARTS - set(vars(cls)):
-                setattr(cls, part, getattr(CriterionParts, part))
+        below: type[Any] | None = cls.__base__
+        if FORMULA & set(vars(cls)) and below is not None and getattr(below, "name", None):
+            rule = "must subclass InformationObjective, as it has another formula than the class below it"
+            raise InputError(cls.__name__, rule, below.__name__)
 
     @classmethod
     def overrides(cls, part: str) -> bool:
@@ -202,10 +179,6 @@ class CriterionParts(ProofParts):
     def prior_criterion(self) -> float | None:
         """The criterion before any measurement, if it is a size (trace, max-eigenvalue) and not a logarithm."""
         return None
-
-    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
-        """:meth:`criterion` of planar targets from the entries of ``[[a, b], [b, c]]``: three (..., M) -> (..., M)."""
-        return self.criterion(np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2))
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:  # noqa: ARG002
         """Derivative of one planar target's value, for weight 1, in the entries of ``[[a, b], [b, c]]``: (..., 3)."""
@@ -292,7 +265,27 @@ class CriterionParts(ProofParts):
         """The data as levels, if the value is one over their smallest (max-eigenvalue, at most two coordinates)."""
         return None
 
+    # Parts for relaxations and certificates.
 
-_PUBLIC = (name for owner in (ProofParts, CriterionParts) for name in vars(owner) if not name.startswith("_"))
-OPTIONAL_PARTS = {"is_submodular", *_PUBLIC} - {"criterion", "gradient", "value", "overrides", "prior_magnitude"}
-"""Parts that hold for a criterion's own formula only: a subclass with another formula does not inherit them."""
+    def conic_value(self, posterior: Sequence[Any]) -> Any:  # noqa: ARG002
+        """The value as a concave cvxpy expression of each target's information: M expressions of shape (d, d)."""
+        raise lacking(self, "conic_value(posterior)", "value as a concave cvxpy expression")
+
+    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002
+        """Return the record of the tangent at ``point`` (M, d, d), from which the verifier derives its bound."""
+        raise lacking(self, "fenchel_point(point, target)", "tangent as the verifier knows it")
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """Further fields of the criterion in a certificate's problem record, by name, as plain data."""
+        return {}
+
+    @property
+    def prior_eigenvalue(self) -> float | None:
+        """An irrational number of the prior that a certificate states as a narrow range, if it needs one."""
+        return None
+
+    @property
+    def verifier_averages(self) -> bool:
+        """True if the verifier bounds values, and so averages of them; else it compares each value with a level."""
+        return True

@@ -7,18 +7,17 @@ is normalised, non-decreasing in ``S`` and concave in ``Lambda``; each has a fil
 
 from __future__ import annotations
 
-import warnings
 from copy import copy
-from dataclasses import dataclass
 from math import isqrt
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from ratt_opt._validation import BoolArray, FloatArray, IntArray, check_finite, readonly
+from ratt_opt._validation import BoolArray, FloatArray, IntArray, readonly
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.checked_matrices import check_information, check_output, check_prior, check_weights
 from ratt_opt.setfunctions.criterion_parts import CriterionParts
-from ratt_opt.setfunctions.rounding_errors import inverse_error, is_definite, negative_parts, shrunk_to_semidefinite
+from ratt_opt.setfunctions.rounding_errors import inverse_error, negative_parts
 from ratt_opt.setfunctions.target_parts import TargetParts
 
 if TYPE_CHECKING:
@@ -28,38 +27,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.setfunctions.decomposition import Decomposition
 
-__all__ = ["InformationObjective", "from_triangles", "packed", "positive_parts", "symmetric_inverse", "triangles"]
-
-SYMMETRY_TOLERANCE = 1e-9
-"""Largest accepted asymmetry, and most negative accepted eigenvalue, relative to the matrix (rounding)."""
-SINGLE_TOLERANCE = 1e-6
-"""Largest accepted asymmetry of float32 matrices: eight of their roundings."""
-LARGEST = 1e100
-"""Entries and weights beyond this, priors and weights below its inverse are refused: products of two stay finite."""
-WIDEST = 2e14
-"""Largest eigenvalue of an element's information times that of the prior. Sums of both hold sixteen digits, of which
-searches that exchange elements lose a few: beyond this nothing would be left of the prior."""
-DEEPEST = 0.01
-"""Largest size of a negative eigenvalue of the information times the prior's: some robots' must not outweigh it."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SignParams:
-    """Limits from which a small eigenvalue counts as negative, or as positive.
-
-    Negative ones within ``rounded`` or ``slight`` stay as they are, and every published end accounts for them; those
-    beyond both are set to 0. Larger limits change fewer of the given matrices, and leave ends further apart.
-
-    ``rounded`` : share of the largest eigenvalue [1]; ``slight`` : share of the prior's inverse [1]
-    ``clear`` : share of the largest from which a prior's eigenvalue is positive [1]; below, exact arithmetic decides
-    """
-
-    rounded: float = 1e-13
-    slight: float = 1e-9
-    clear: float = 1e-12
-
-
-SIGN = SignParams()
+__all__ = ["InformationObjective", "from_triangles", "packed", "symmetric_inverse", "triangles"]
 
 
 class InformationObjective(CriterionParts):
@@ -77,10 +45,12 @@ class InformationObjective(CriterionParts):
         (float32: ``-1e-6`` times the largest). Those that are beyond ``-1e-13`` times the largest and ``-1e-9`` times
         the prior's inverse would take information away, and are set to 0, with a ``UserWarning``
     weights : (M,) positive importance of each target; ones by default
+    output : the part of the state that counts, (q, d) or (M, q, d) of full row rank, for criteria that support it;
+        ``None`` for all of it
 
     Raises
     ------
-    InputError : a shape, symmetry, definiteness or sign rule is broken.
+    InputError : a shape, symmetry, definiteness or sign rule is broken, or rows of ``output`` depend on each other.
 
     Notes
     -----
@@ -99,6 +69,7 @@ class InformationObjective(CriterionParts):
         "_singletons",
         "condition",
         "information",
+        "output",
         "prior",
         "prior_information",
         "repaired",
@@ -108,11 +79,24 @@ class InformationObjective(CriterionParts):
     is_non_decreasing: ClassVar[bool] = True
     """Added information is positive semidefinite, up to the rounding that the input rule admits."""
 
-    def __init__(self, prior: ArrayLike, information: ArrayLike, weights: ArrayLike | None = None) -> None:
-        self.prior: FloatArray = readonly(_check_prior(prior))
-        checked, self.repaired = _check_information(information, self.prior)
+    supports_output: ClassVar[bool] = False
+    """True if the criterion's formulas hold for a part of the state, ``output``."""
+
+    def __init__(
+        self,
+        prior: ArrayLike,
+        information: ArrayLike,
+        weights: ArrayLike | None = None,
+        *,
+        output: ArrayLike | None = None,
+    ) -> None:
+        if output is not None and not self.supports_output:
+            raise InputError("output", "must be None for a criterion of whole states", type(self).__name__)
+        self.prior: FloatArray = readonly(check_prior(prior))
+        checked, self.repaired = check_information(information, self.prior)
         self.information: FloatArray = readonly(checked)
-        self.weights: FloatArray = readonly(_check_weights(weights, self.n_targets))
+        self.weights: FloatArray = readonly(check_weights(weights, self.n_targets))
+        self.output: FloatArray | None = None if output is None else readonly(check_output(output, self.prior))
         self.prior_information: FloatArray = readonly(symmetric_inverse(self.prior))
         # The baseline is computed by the same formula as the posterior, so that f(empty set) is exactly 0.
         is_own_value = self.overrides("value") and not self.overrides("criterion")
@@ -173,13 +157,14 @@ class InformationObjective(CriterionParts):
         one.prior, one.prior_information = readonly(self.prior[own]), readonly(self.prior_information[own])
         one.information, one.weights = readonly(self.information[:, own]), readonly(self.weights[own])
         one._baseline, one.condition = readonly(self._baseline[own]), readonly(self.condition[own])
+        one.output = None if self.output is None else readonly(self.output[own])
         one._singletons = one._inverse_error = None
         return one
 
     def with_information(self, information: ArrayLike) -> Self:
         """Replace the elements: information (E, M, d, d), checked."""
         other = copy(self)
-        checked, other.repaired = _check_information(information, self.prior)
+        checked, other.repaired = check_information(information, self.prior)
         other.information = readonly(checked)
         other.condition = readonly(other._condition())
         other._singletons = other._negative_parts = None
@@ -197,6 +182,27 @@ class InformationObjective(CriterionParts):
             return None
         return TargetParts(self, top=self._baseline, is_sum=True)
 
+    @property
+    def compiled_code(self) -> int | None:
+        """Number of the criterion in the compiled code, if that has it; it knows criteria of whole states only."""
+        return self.native_kernel if self.output is None else None
+
+    @property
+    def stated(self) -> dict[str, Any]:
+        """The output matrices, row by row."""
+        return {} if self.output is None else {"output": self.output.reshape(self.n_targets, -1).tolist()}
+
+    def counted(self, covariance: FloatArray) -> FloatArray:
+        """Covariances of the part of the state that counts: (..., M, d, d) -> (..., M, q, q)."""
+        if self.output is None:
+            return covariance
+        return np.asarray(self.output @ covariance @ np.swapaxes(self.output, -1, -2))
+
+    def counted_size(self, size: FloatArray) -> FloatArray:
+        """(..., M) no less than the weighted trace of what counts of such a covariance: ``w_j |C_j|^2 size_j``."""
+        squares = float(self.dimension) if self.output is None else np.square(self.output).sum(axis=(-2, -1))
+        return np.asarray(self.weights * squares * size)
+
     def criterion_of_one(self, matrices: FloatArray, target: int) -> FloatArray:
         """(K,) weighted criterion of one target for its posterior information (K, d, d), by the formula for one target.
 
@@ -204,8 +210,7 @@ class InformationObjective(CriterionParts):
         """
         one, only = copy(self), slice(target, target + 1)
         one.weights = self.weights[only]
-        if (output := getattr(self, "output", None)) is not None:
-            one.output = output[only]  # type: ignore[attr-defined]
+        one.output = None if self.output is None else self.output[only]
         return one.criterion(matrices[:, None])[:, 0]
 
     def posterior_information(self, subset: IntArray) -> FloatArray:
@@ -281,140 +286,3 @@ def from_triangles(entries: FloatArray) -> FloatArray:
     rows, columns = np.tril_indices(d)
     place[rows, columns] = place[columns, rows] = np.arange(len(rows))
     return np.ascontiguousarray(entries[..., place])
-
-
-def _check_symmetric(argument: str, matrices: FloatArray, *, single: bool) -> FloatArray:
-    """Return the symmetric part of matrices that are symmetric up to rounding, to float32 if they are ``single``."""
-    tolerance = SINGLE_TOLERANCE if single else SYMMETRY_TOLERANCE
-    if np.abs(matrices).max() > LARGEST:
-        raise InputError(argument, f"must have entries of size at most {LARGEST:g}", float(np.abs(matrices).max()))
-    transposed = np.swapaxes(matrices, -1, -2)
-    defect = np.abs(matrices - transposed).max(axis=(-1, -2))
-    bad = np.argwhere(defect > tolerance * np.abs(matrices).max(axis=(-1, -2)))
-    if len(bad):
-        where = tuple(bad[0].tolist())
-        raise InputError(f"{argument}[{', '.join(map(str, where))}]", "must be symmetric", matrices[where].tolist())
-    return (matrices + transposed) / 2
-
-
-def _is_single(value: ArrayLike) -> bool:
-    return bool(np.asarray(value).dtype == np.float32)
-
-
-def _check_prior(value: ArrayLike) -> FloatArray:
-    """Return (M, d, d) symmetric positive definite matrices."""
-    prior = check_finite("prior", value, ndim=3)
-    if prior.shape[0] < 1:
-        raise InputError("prior", "must hold at least one target", f"shape {prior.shape}")
-    if prior.shape[1] != prior.shape[2] or prior.shape[1] < 1:
-        raise InputError("prior", "must have shape (M, d, d)", f"shape {prior.shape}")
-    prior = _check_symmetric("prior", prior, single=_is_single(value))
-    for j, eigenvalues in enumerate(np.linalg.eigvalsh(prior)):
-        if eigenvalues[0] <= np.finfo(np.float64).eps * abs(eigenvalues[-1]):
-            if np.linalg.eigvalsh(_unit_diagonal(prior[j]))[0] > np.finfo(np.float64).eps:
-                rule = "must have a condition below 4.5e15: rescale the states, for instance seconds to nanoseconds"
-                shown = f"eigenvalues from {eigenvalues[0]:.6g} to {eigenvalues[-1]:.6g}"
-                raise InputError(f"prior[{j}]", rule, shown)
-            raise InputError(f"prior[{j}]", "must be positive definite", f"smallest eigenvalue {eigenvalues[0]:.6g}")
-        if eigenvalues[0] < SIGN.clear * eigenvalues[-1] and not is_definite(prior[j]):
-            shown = f"a negative eigenvalue; the smallest is computed as {eigenvalues[0]:.6g}"
-            raise InputError(f"prior[{j}]", "must be positive definite", shown)
-        if eigenvalues[0] < 1 / LARGEST:
-            rule = f"must have eigenvalues of at least {1 / LARGEST:g}"
-            raise InputError(f"prior[{j}]", rule, f"smallest eigenvalue {eigenvalues[0]:.6g}")
-    return prior
-
-
-def _unit_diagonal(matrix: FloatArray) -> FloatArray:
-    """The matrix in units in which its diagonal is one: definite as before; as it is if an entry is not positive."""
-    diagonal = np.diagonal(matrix)
-    if diagonal.min() <= 0:
-        return matrix
-    scale = 1 / np.sqrt(diagonal)
-    return np.asarray(matrix * scale[:, None] * scale)
-
-
-def _check_information(value: ArrayLike, prior: FloatArray) -> tuple[FloatArray, int]:
-    """Return (E, M, d, d) matrices, semidefinite up to rounding, that leave the prior its digits, and how many were
-    repaired.
-    """
-    targets, dimension = prior.shape[:2]
-    information = check_finite("information", value, ndim=4)
-    if information.shape[0] < 1:
-        raise InputError("information", "must hold at least one element", f"shape {information.shape}")
-    if information.shape[1:] != (targets, dimension, dimension):
-        rule = f"must have shape (E, {targets}, {dimension}, {dimension}) to match prior"
-        raise InputError("information", rule, f"shape {information.shape}")
-    single = _is_single(value)
-    information = _check_symmetric("information", information, single=single)
-    eigenvalues: FloatArray = np.asarray(np.linalg.eigvalsh(information))
-    tolerance = SINGLE_TOLERANCE if single else SYMMETRY_TOLERANCE
-    bad = np.argwhere(eigenvalues[..., 0] < -tolerance * np.abs(eigenvalues[..., -1]))
-    if len(bad):
-        e, j = bad[0].tolist()
-        shown = f"eigenvalues from {eigenvalues[e, j, 0]:.6g} to {eigenvalues[e, j, -1]:.6g}"
-        raise InputError(f"information[{e}, {j}]", "must be positive semidefinite", shown)
-    largest = np.asarray(np.linalg.eigvalsh(prior)[:, -1])
-    wrong = is_negative(eigenvalues, SYMMETRY_TOLERANCE) if single else np.zeros(eigenvalues.shape[:2], dtype=np.bool_)
-    _check_spread(np.where(wrong[..., None], np.maximum(eigenvalues, 0.0), eigenvalues), largest)
-    wrong |= is_negative(eigenvalues) & (-eigenvalues[..., 0] * largest > SIGN.slight)
-    if wrong.any():
-        _warn_of_repair(eigenvalues[wrong], single=single)
-        information = positive_parts(information, wrong)
-    return shrunk_to_semidefinite(information), int(wrong.sum())
-
-
-def is_negative(eigenvalues: FloatArray, share: float = SIGN.rounded) -> BoolArray:
-    """Tell whether the smallest of (..., d) ascending eigenvalues is below 0 by more than a share of the largest."""
-    return np.asarray(eigenvalues[..., 0] < -share * np.abs(eigenvalues[..., -1]))
-
-
-def positive_parts(matrices: FloatArray, wrong: BoolArray | None = None) -> FloatArray:
-    """Symmetric (..., d, d) matrices, the nearest semidefinite ones instead of those that are ``wrong``.
-
-    By default those with a negative eigenvalue that is more than rounding.
-    """
-    wrong = is_negative(np.asarray(np.linalg.eigvalsh(matrices))) if wrong is None else wrong
-    if not wrong.any():
-        return matrices
-    values, vectors = np.linalg.eigh(matrices[wrong])
-    positive = (vectors * np.maximum(values, 0)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
-    repaired = matrices.copy()
-    repaired[wrong] = (positive + np.swapaxes(positive, -1, -2)) / 2
-    return repaired
-
-
-def _warn_of_repair(eigenvalues: FloatArray, *, single: bool) -> None:
-    share = float((eigenvalues[:, 0] / np.abs(eigenvalues[:, -1])).min())
-    kind = "float32 rounding repaired" if single else "negative eigenvalues set to 0"
-    text = f"information: {kind} in {len(eigenvalues)} matrices (down to {share:.3g} of the largest eigenvalue)"
-    warnings.warn(f"{text}; all values are those of the repaired matrices", UserWarning, stacklevel=4)
-
-
-def _check_spread(eigenvalues: FloatArray, largest: FloatArray) -> None:
-    """Refuse information, of (E, M, d) ``eigenvalues``, beside which a prior of (M,) ``largest`` variance is lost."""
-    high, low = eigenvalues[..., -1] * largest, -eigenvalues[..., 0] * largest
-    rules = (
-        (high, WIDEST, "must be at most {} times the inverse of prior[{}], which would lose its digits beside it"),
-        (low, DEEPEST, "must not be negative anywhere by more than {} times the inverse of prior[{}]"),
-    )
-    for sizes, limit, rule in rules:
-        bad = np.argwhere(sizes > limit)
-        if len(bad):
-            e, j = bad[0].tolist()
-            raise InputError(f"information[{e}, {j}]", rule.format(f"{limit:g}", j), f"{sizes[e, j]:.3g} times")
-
-
-def _check_weights(value: ArrayLike | None, targets: int) -> FloatArray:
-    """Return (M,) positive numbers; ones by default."""
-    if value is None:
-        return np.ones(targets)
-    weights = check_finite("weights", value, ndim=1)
-    if weights.shape != (targets,):
-        raise InputError("weights", f"must have shape ({targets},) to match prior", f"shape {weights.shape}")
-    if (weights <= 0).any():
-        raise InputError("weights", "must be positive", float(weights.min()))
-    if weights.min() < 1 / LARGEST or weights.max() > LARGEST:
-        shown = f"{weights.min():.6g} to {weights.max():.6g}"
-        raise InputError("weights", f"must be in [{1 / LARGEST:g}, {LARGEST:g}]", shown)
-    return weights

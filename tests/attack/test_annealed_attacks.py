@@ -35,7 +35,7 @@ def test_no_attack_after_the_time():
 
 def test_criteria_without_compiled_code_are_attacked_otherwise():
     class Own(ro.TraceObjective):
-        compiled_code = None  # as in a criterion of one's own
+        native_kernel = None  # as in a criterion of one's own
 
     scenario = ro.network_scenario("disk-6", 16, 3, alpha_s=3, alpha_c=6, seed=0)
     shown = scenario.problem()

@@ -11,14 +11,7 @@ from ratt_opt.attack.bounds import forced_survivors
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attack.engine import watch
 from tests.brackets import attains, is_exact
-from tests.strategies import OBJECTIVES, information_data, random_problem, range_bearing
-
-
-class Hidden(ro.TraceObjective):
-    """A criterion of one's own, of which no formula is known."""
-
-    def criterion(self, posterior_information):
-        return super().criterion(posterior_information)
+from tests.strategies import OBJECTIVES, OwnTrace, information_data, random_problem, range_bearing
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -44,7 +37,7 @@ def test_both_large_searches_agree_on_a_complete_graph(seed):
     budgets = int(rng.integers(1, 6)), int(rng.integers(11, 40))
     plan = np.arange(13)
     shown = ro.worst_case_attack(ro.Problem(ro.TraceObjective(prior, information), plan, None, *budgets), plan)
-    hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, None, *budgets), plan)
+    hidden = ro.worst_case_attack(ro.Problem(OwnTrace(prior, information), plan, None, *budgets), plan)
     assert shown.stop is ro.Stop.CLOSED
     assert hidden.stop is ro.Stop.EXHAUSTED
     assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)
@@ -104,7 +97,11 @@ def test_attacks_under_a_criterion_of_one_s_own_are_annealed_for_half_of_the_tim
     watch(monkeypatch, "annealed values", watched)
     problem = ro.network_scenario("hubs", 24, 6, alpha_s=1 / 3, alpha_c=0.3, seed=1).problem("trace")
     own = ro.Problem(
-        Hidden(problem.objective.prior, problem.objective.information), problem.robot, problem.graph, 8, problem.alpha_c
+        OwnTrace(problem.objective.prior, problem.objective.information),
+        problem.robot,
+        problem.graph,
+        8,
+        problem.alpha_c,
     )
     plan = ro.ratt(own).elements
     result = ro.worst_case_attack(own, plan, time_limit=1000)

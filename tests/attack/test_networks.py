@@ -11,7 +11,7 @@ from ratt_opt.budget import Budget
 from tests.attack.engine import LARGE, annealed_value
 from tests.brackets import attains
 from tests.interrupts import interrupted_at
-from tests.strategies import OBJECTIVES, range_bearing
+from tests.strategies import OBJECTIVES, OwnTrace, range_bearing
 from tests.ways import go
 
 
@@ -104,17 +104,12 @@ def test_both_exact_ways_agree_at_sixteen_robots(seed, monkeypatch):
     """Dual prices as it is, thresholds for a criterion of one's own, of which no formula is known."""
     rng = np.random.default_rng(seed)
     prior, information = range_bearing(rng, 16, 4, 1)
-
-    class Hidden(ro.TraceObjective):
-        def criterion(self, posterior_information):
-            return super().criterion(posterior_information)
-
     plan, graph = np.arange(16), disk_graph(seed, 16, 4)
     budgets, held = (3, 7), (frozenset({seed}), frozenset(sorted((min(e), max(e)) for e in graph.edges)[:seed]))
     with monkeypatch.context() as large:
         go(large, LARGE)
         problem = ro.Problem(ro.TraceObjective(prior, information), plan, graph, *budgets, *held)
         shown = ro.worst_case_attack(problem, plan)
-    hidden = ro.worst_case_attack(ro.Problem(Hidden(prior, information), plan, graph, *budgets, *held), plan)
+    hidden = ro.worst_case_attack(ro.Problem(OwnTrace(prior, information), plan, graph, *budgets, *held), plan)
     assert (shown.stop, hidden.stop) == (ro.Stop.CLOSED, ro.Stop.EXHAUSTED)
     assert shown.upper == pytest.approx(hidden.upper, rel=2e-10)

@@ -11,6 +11,7 @@ import pytest
 
 import ratt_opt as ro
 from analysis.faults.moments import interrupted_after, is_answered, searches
+from tests.strategies import OwnTrace
 
 LONG = (
     "worst_case_attack, network",
@@ -34,7 +35,7 @@ def test_searches_answer_an_interrupt_soon_and_with_a_bracket(name, delay):
     assert moment.seconds is None or moment.seconds < 0.6  # 0.3 s in the campaign, whose modules are loaded
 
 
-class Raising(ro.TraceObjective):
+class Raising(OwnTrace):
     """Raises an interrupt in the ``at``-th value, where Python itself would in a slow function of a user's own."""
 
     calls, at = 0, None

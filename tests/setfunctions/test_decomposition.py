@@ -11,6 +11,7 @@ import pytest
 from scipy.optimize import linprog
 
 import ratt_opt as ro
+from ratt_opt.setfunctions.information import InformationObjective
 from tests.setfunctions import oracle
 
 CRITERIA = (ro.TraceObjective, ro.LogDetObjective, ro.MaxEigenvalueObjective)
@@ -45,7 +46,7 @@ class Saturating(ro.SumFunction):
         return np.minimum(membership.sum(axis=1), 2.0)
 
 
-class RootTrace(ro.TraceObjective):
+class RootTrace(InformationObjective):
     """A formula of its own: its parts are those of the formula."""
 
     def criterion(self, posterior_information):

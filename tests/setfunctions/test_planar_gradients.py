@@ -24,16 +24,3 @@ def test_only_one_criterion_is_decided_by_an_axis_and_it_has_no_planar_gradient(
         assert criterion.overrides("planar_levels") == (name == "maxeig")
     with pytest.raises(ro.InputError, match=r"planar_gradient\(a, b, c\)"):
         OBJECTIVES["maxeig"](*information_data(rng, 3, 2)).planar_gradient(1.0, 0.0, 1.0)
-
-
-@pytest.mark.parametrize("name", OBJECTIVES)
-def test_a_criterion_built_on_another_one_calls_it_and_inherits_none_of_its_parts(name):
-    class Scaled(OBJECTIVES[name]):
-        def criterion(self, posterior_information):
-            return 2 * super().criterion(posterior_information)
-
-    prior, information = information_data(np.random.default_rng(1), 4, 3)
-    scaled, plain = Scaled(prior, information), OBJECTIVES[name](prior, information)
-    assert (Scaled.compiled_code, Scaled.overrides("planar_levels")) == (None, False)
-    posterior = plain.posterior_information(np.array([0, 2]))
-    assert scaled.criterion(posterior) == pytest.approx(2 * plain.criterion(posterior))

@@ -33,7 +33,7 @@ class LogDetObjective(InformationObjective):
     name: ClassVar[str] = "logdet"
     unit: ClassVar[str] = "nat"
     is_submodular: ClassVar[bool] = True
-    compiled_code: ClassVar[int | None] = 1
+    native_kernel: ClassVar[int | None] = 1
     target_criterion = InformationObjective.criterion_of_one
 
     @property
@@ -49,12 +49,8 @@ class LogDetObjective(InformationObjective):
         """(..., M) weighted log-determinants of the posterior covariances."""
         if self.dimension == 2:
             rows = posterior_information
-            return LogDetObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return np.asarray(-self.weights * np.log(determinant(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])))
         return np.asarray(-self.weights * np.linalg.slogdet(posterior_information)[1])
-
-    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
-        """(..., M) the same in closed form."""
-        return np.asarray(-self.weights * np.log(determinant(a, b, c)))
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
         """``Lambda^{-1}`` by its entries, the off-diagonal one twice: (..., 3)."""

@@ -19,7 +19,6 @@ import numpy as np
 
 from ratt_opt.setfunctions.criteria.maxeig_marginals import MARGIN, marginal_ends
 from ratt_opt.setfunctions.criteria.output_covariances import output_covariances
-from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import eigenvalues as eigenvalues_of
 from ratt_opt.setfunctions.criteria.two_by_two import largest_of_inverse
 from ratt_opt.setfunctions.criterion_parts import Tangent
@@ -32,10 +31,10 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
 
-__all__ = ["MaxEigenvalueObjective", "OutputMaxEigenvalueObjective"]
+__all__ = ["MaxEigenvalueObjective"]
 
 
-class MaxEigenvalueObjective(StateCriterion):
+class MaxEigenvalueObjective(InformationObjective):
     """``max_j w_j lambda_max(prior_j) - max_j w_j lambda_max(Lambda_j(S)^{-1})``: worst axis (E-criterion) [m^2].
 
     ``output`` : the part of the state that counts, (q, d) or (M, q, d) of full row rank, or ``None`` for all of it:
@@ -46,26 +45,25 @@ class MaxEigenvalueObjective(StateCriterion):
 
     name: ClassVar[str] = "maxeig"
     unit: ClassVar[str] = "m²"
-    compiled_code: ClassVar[int | None] = 2
-    error_scale = StateCriterion.error_scale
+    native_kernel: ClassVar[int | None] = 2
+    supports_output: ClassVar[bool] = True
+    error_scale = InformationObjective.counted_size
     is_least_of_targets: ClassVar[bool] = True
     target_criterion = InformationObjective.criterion_of_one
 
     @property
     def prior_criterion(self) -> float:
-        """``max_j w_j lambda_max(prior_j)``."""
+        """``max_j w_j lambda_max(C_j prior_j C_j')``."""
         return float(self._baseline.max())
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted largest eigenvalues of the posterior covariances."""
+        """(..., M) weighted largest eigenvalues of the posterior covariances of what counts."""
+        if self.output is not None:
+            return np.asarray(self.weights * _largest(output_covariances(posterior_information, self.output)))
         if self.dimension == 2:
             rows = posterior_information
-            return MaxEigenvalueObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return np.asarray(self.weights * largest_of_inverse(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1]))
         return np.asarray(self.weights / np.linalg.eigvalsh(posterior_information)[..., 0])
-
-    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
-        """(..., M) the same in closed form."""
-        return np.asarray(self.weights * largest_of_inverse(a, b, c))
 
     def combine(self, per_target: FloatArray) -> FloatArray:
         """The worst target's: (..., M) -> (...)."""
@@ -75,17 +73,20 @@ class MaxEigenvalueObjective(StateCriterion):
         """Value as a concave function of the posterior information: (..., M, d, d) -> (...)."""
         return np.asarray(self._baseline.max() - self.criterion(posterior_information).max(axis=-1))
 
-    def weakest_axes(
-        self,
-        matrices: FloatArray,
-        targets: slice = slice(None),  # noqa: ARG002
-    ) -> tuple[FloatArray, FloatArray]:
+    def weakest_axes(self, matrices: FloatArray, targets: slice = slice(None)) -> tuple[FloatArray, FloatArray]:
         """Level and axis of each matrix: ``min_v v'Lv / |Cv|^2`` (..., K) and its ``v`` (..., K, d) with ``|Cv| = 1``.
 
         ``matrices`` : (..., K, d, d) positive definite, of K ``targets``
         """
-        eigenvalues, vectors = np.linalg.eigh(matrices)
-        return eigenvalues[..., 0], vectors[..., 0]
+        if self.output is None:
+            eigenvalues, vectors = np.linalg.eigh(matrices)
+            return eigenvalues[..., 0], vectors[..., 0]
+        output = self.output[targets]
+        columns = symmetric_inverse(matrices) @ np.swapaxes(output, -1, -2)
+        eigenvalues, vectors = np.linalg.eigh(output @ columns)
+        axes = columns @ vectors[..., -1:]
+        axes = (axes / np.linalg.norm(output @ axes, axis=-2, keepdims=True))[..., 0]
+        return 1 / eigenvalues[..., -1], axes
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
         """``w_j v v' / l^2`` of level and axis at the lowest-indexed worst target, zero elsewhere: (..., M, d, d)."""
@@ -118,7 +119,9 @@ class MaxEigenvalueObjective(StateCriterion):
         return -np.stack([row[..., target] for row, target in zip(criterion, targets, strict=True)])
 
     def conic_value(self, posterior: Sequence[Any]) -> Any:
-        """``max_j w_j lambda_max(prior_j) - max_j w_j / lambda_min(L_j)`` in cvxpy."""
+        """``max_j w_j lambda_max(prior_j) - max_j w_j / lambda_min(L_j)`` in cvxpy, for whole states."""
+        if self.output is not None:
+            return super().conic_value(posterior)
         import cvxpy as cp
 
         each = [w * cp.inv_pos(cp.lambda_min(L)) for w, L in zip(self.weights, posterior, strict=True)]
@@ -135,28 +138,35 @@ class MaxEigenvalueObjective(StateCriterion):
         levels, axes = self.weakest_axes(point[target : target + 1], slice(target, target + 1))
         return float(1 / levels[0]), axes[0]
 
-    def _square(self, target: int, v: FloatArray) -> float:  # noqa: ARG002
+    def _square(self, target: int, v: FloatArray) -> float:
         """``|Cv|^2`` of one target."""
-        return float(v @ v)
+        counted = v if self.output is None else self.output[target] @ v
+        return float(counted @ counted)
 
     @property
     def prior_eigenvalue(self) -> float:
         """``max_j w_j lambda_max(C_j prior_j C_j')``."""
-        return float((self.weights * np.linalg.eigvalsh(self.prior)[:, -1]).max())
+        return float((self.weights * np.linalg.eigvalsh(self.counted(self.prior))[:, -1]).max())
 
     @property
     def verifier_averages(self) -> bool:
-        """Eigenvalues are roots of polynomials, which it bounds for planar targets only."""
-        return self.dimension == 2
+        """Eigenvalues are roots of polynomials, which it bounds for whole states of planar targets only."""
+        return self.output is None and self.dimension == 2
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:
         """Bounds by how far the lowest level of all targets can rise."""
         return marginal_ends(self, owners, budget)
 
     def least_levels(self) -> FloatArray:
-        """(n, M) ``l(X)`` of each element's information, from below."""
+        """(n, M) ``l(X)`` of each element's information, from below; with an output 0 if that is singular."""
         eigenvalues = np.linalg.eigvalsh(self.information)
-        return np.clip(eigenvalues[..., 0] * (1 - MARGIN) - MARGIN * eigenvalues[..., -1], 0.0, None)
+        slack = MARGIN * eigenvalues[..., -1]
+        if self.output is None:
+            return np.clip(eigenvalues[..., 0] * (1 - MARGIN) - slack, 0.0, None)
+        regular = eigenvalues[..., 0] > 2 * slack
+        eye = np.eye(self.dimension)
+        lowered = np.where(regular[..., None, None], self.information - slack[..., None, None] * eye, eye)
+        return np.asarray(np.where(regular, self.weights / self.criterion(lowered) * (1 - MARGIN), 0.0))
 
     def largest_marginals(self) -> FloatArray:
         """(n, M) by how far one target's own level can rise."""
@@ -164,92 +174,24 @@ class MaxEigenvalueObjective(StateCriterion):
 
     def largest_alone(self) -> FloatArray:
         """(n, M) no marginal of an element exceeds this if target ``j`` is the worst before it is added."""
-        a, level = np.linalg.eigvalsh(self.information)[..., -1].clip(0.0), self.weights / self._baseline
-        return np.asarray(self.weights * a / (level * (level + a)))
-
-    def planar_levels(self) -> PlanarLevels | None:
-        """The data as levels, for targets with at most two coordinates."""
-        if self.dimension > 2:
-            return None
-        return PlanarLevels.of(self.prior_information, self.information, self.weights, self.rounding)
-
-
-class OutputMaxEigenvalueObjective(MaxEigenvalueObjective):
-    """The worst axis of a part of the state; made by ``MaxEigenvalueObjective(..., output=C)``.
-
-    Raises
-    ------
-    InputError : ``output`` has another shape, or its rows depend on each other.
-    """
-
-    __slots__ = ()
-
-    name: ClassVar[str] = "maxeig"
-    unit: ClassVar[str] = "m²"
-    output: FloatArray
-    stated = StateCriterion.stated
-    error_scale = StateCriterion.error_scale
-    # Parts written in levels and axes apply unchanged.
-    prior_criterion = MaxEigenvalueObjective.prior_criterion
-    combine = MaxEigenvalueObjective.combine
-    tangent_targets = MaxEigenvalueObjective.tangent_targets
-    tangent = MaxEigenvalueObjective.tangent
-    cut_values = MaxEigenvalueObjective.cut_values
-    fenchel_point = MaxEigenvalueObjective.fenchel_point
-    marginal_ends = MaxEigenvalueObjective.marginal_ends
-    largest_marginals = MaxEigenvalueObjective.largest_marginals
-    is_least_of_targets: ClassVar[bool] = True
-    target_criterion = InformationObjective.criterion_of_one
-
-    def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted largest eigenvalues of the outputs' covariances."""
-        outputs = output_covariances(posterior_information, self.output)
-        if outputs.shape[-1] == 1:
-            return np.asarray(self.weights * outputs[..., 0, 0])
-        if outputs.shape[-1] == 2:
-            return np.asarray(
-                self.weights * eigenvalues_of(outputs[..., 0, 0], outputs[..., 0, 1], outputs[..., 1, 1])[1]
-            )
-        return np.asarray(self.weights * np.linalg.eigvalsh(outputs)[..., -1])
-
-    def weakest_axes(self, matrices: FloatArray, targets: slice = slice(None)) -> tuple[FloatArray, FloatArray]:
-        """``1 / lambda_max(C L^{-1} C')`` and ``v = L^{-1} C'u``, ``u`` its eigenvector."""
-        output = self.output[targets]
-        columns = symmetric_inverse(matrices) @ np.swapaxes(output, -1, -2)
-        eigenvalues, vectors = np.linalg.eigh(output @ columns)
-        axes = columns @ vectors[..., -1:]
-        axes = (axes / np.linalg.norm(output @ axes, axis=-2, keepdims=True))[..., 0]
-        return 1 / eigenvalues[..., -1], axes
-
-    def _square(self, target: int, v: FloatArray) -> float:
-        seen = self.output[target] @ v
-        return float(seen @ seen)
-
-    @property
-    def prior_eigenvalue(self) -> float:
-        """``max_j w_j lambda_max(C_j prior_j C_j')``."""
-        outputs = self.output @ self.prior @ np.swapaxes(self.output, -1, -2)
-        return float((self.weights * np.linalg.eigvalsh(outputs)[:, -1]).max())
-
-    @property
-    def verifier_averages(self) -> bool:
-        """False: the verifier compares each value with a level."""
-        return False
-
-    def least_levels(self) -> FloatArray:
-        """(n, M) ``l(X)`` of each element's information, from below; 0 if that is singular."""
-        eigenvalues = np.linalg.eigvalsh(self.information)
-        slack = MARGIN * eigenvalues[..., -1]
-        regular = eigenvalues[..., 0] > 2 * slack
-        eye = np.eye(self.dimension)
-        lowered = np.where(regular[..., None, None], self.information - slack[..., None, None] * eye, eye)
-        return np.asarray(np.where(regular, self.weights / self.criterion(lowered) * (1 - MARGIN), 0.0))
-
-    def largest_alone(self) -> FloatArray:
-        """(n, M) ``w q / (l (1 + q))`` at the prior's level ``l``."""
+        if self.output is None:
+            a, level = np.linalg.eigvalsh(self.information)[..., -1].clip(0.0), self.weights / self._baseline
+            return np.asarray(self.weights * a / (level * (level + a)))
         root = np.linalg.cholesky(self.prior)
         q = np.linalg.eigvalsh(np.swapaxes(root, -1, -2) @ self.information @ root)[..., -1].clip(0.0)
         return np.asarray(self._baseline * q / (1 + q))
 
+    def planar_levels(self) -> PlanarLevels | None:
+        """The data as levels, for whole states with at most two coordinates."""
+        if self.output is not None or self.dimension > 2:
+            return None
+        return PlanarLevels.of(self.prior_information, self.information, self.weights, self.rounding)
 
-MaxEigenvalueObjective.of_part = OutputMaxEigenvalueObjective
+
+def _largest(matrices: FloatArray) -> FloatArray:
+    """(...,) largest eigenvalues of symmetric (..., q, q) matrices."""
+    if matrices.shape[-1] == 1:
+        return matrices[..., 0, 0]
+    if matrices.shape[-1] == 2:
+        return np.asarray(eigenvalues_of(matrices[..., 0, 0], matrices[..., 0, 1], matrices[..., 1, 1])[1])
+    return np.asarray(np.linalg.eigvalsh(matrices)[..., -1])

@@ -6,9 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ratt_opt.errors import InputError
-from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective, OutputMaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.names import CLASSES
-from ratt_opt.setfunctions.criteria.trace import OutputTraceObjective, TraceObjective
 
 if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
@@ -20,16 +18,10 @@ CRITERIA: dict[str, type[InformationObjective]] = {
 }
 """Criteria by name, in the order of ``names.py``."""
 
-CERTIFIED: tuple[type[InformationObjective], ...] = (
-    *CRITERIA.values(),
-    OutputTraceObjective,
-    OutputMaxEigenvalueObjective,
-)
-"""Criteria whose tangents the verifier knows; subclasses of them may have another formula."""
+CERTIFIED = tuple(CRITERIA.values())
+"""Criteria whose tangents the verifier knows."""
 
-WITH_OUTPUT: dict[str, type[TraceObjective | MaxEigenvalueObjective]] = {
-    kind.name: kind for kind in (TraceObjective, MaxEigenvalueObjective)
-}
+WITH_OUTPUT = {name: kind for name, kind in CRITERIA.items() if kind.supports_output}
 """Criteria that support a part of the state, ``output=C``, by name."""
 
 

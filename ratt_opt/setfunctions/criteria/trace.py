@@ -30,7 +30,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ratt_opt.setfunctions.criteria.output_covariances import output_traces
-from ratt_opt.setfunctions.criteria.outputs import StateCriterion
 from ratt_opt.setfunctions.criteria.two_by_two import congruent, eigenvalues, trace_gradient, trace_of_inverse
 from ratt_opt.setfunctions.criterion_parts import SeparableMinorant, Tangent, TargetTangents
 from ratt_opt.setfunctions.information import InformationObjective, packed, symmetric_inverse
@@ -51,7 +50,7 @@ MARGIN = 1e-11
 """Relative safety margin for rounding on the largest marginals."""
 
 
-class TraceObjective(StateCriterion):
+class TraceObjective(InformationObjective):
     """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2].
 
     ``output`` : the part of the state that counts, (q, d) or (M, q, d) of full row rank, or ``None`` for all of it:
@@ -62,111 +61,120 @@ class TraceObjective(StateCriterion):
 
     name: ClassVar[str] = "trace"
     unit: ClassVar[str] = "m²"
-    compiled_code: ClassVar[int | None] = 0
-    error_scale = StateCriterion.error_scale
+    native_kernel: ClassVar[int | None] = 0
+    supports_output: ClassVar[bool] = True
+    error_scale = InformationObjective.counted_size
     target_criterion = InformationObjective.criterion_of_one
 
     @property
     def prior_criterion(self) -> float:
-        """``sum_j w_j tr(prior_j)``."""
+        """``sum_j w_j tr(C_j prior_j C_j')``."""
         return float(self._baseline.sum())
 
     def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted traces of the posterior covariances."""
+        """(..., M) weighted traces of the posterior covariances of what counts."""
+        if self.output is not None:
+            return np.asarray(self.weights * output_traces(posterior_information, self.output))
         if self.dimension == 2:
             rows = posterior_information
-            return TraceObjective.planar_criterion(self, rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1])
+            return np.asarray(self.weights * trace_of_inverse(rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1]))
         if self.dimension == 1:
             return np.asarray(self.weights / posterior_information[..., 0, 0])
         covariance = np.linalg.inv(posterior_information)
         return np.asarray(self.weights * np.trace(covariance, axis1=-2, axis2=-1))
-
-    def planar_criterion(self, a: Any, b: Any, c: Any) -> FloatArray:
-        """(..., M) the same in closed form."""
-        return np.asarray(self.weights * trace_of_inverse(a, b, c))
 
     def planar_gradient(self, a: Any, b: Any, c: Any) -> FloatArray:
         """``Lambda^{-2}`` by its entries, the off-diagonal one twice: (..., 3)."""
         return np.stack(trace_gradient(a, b, c), axis=-1)
 
     def gradient(self, posterior_information: FloatArray) -> FloatArray:
-        """``w_j Lambda_j^{-2}``: (..., M, d, d)."""
-        covariance = np.linalg.inv(posterior_information)
-        return np.asarray(self.weights[:, None, None] * (covariance @ covariance))
+        """``w_j Y_j Y_j'`` with ``Y_j = Lambda_j^{-1} C_j'``: (..., M, d, d)."""
+        y = self._fenchel(posterior_information)
+        return np.asarray(self.weights[:, None, None] * (y @ np.swapaxes(y, -1, -2)))
 
     def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
-        """``tr(L^{-1}) >= 2 tr(Y) - tr(Y L Y)`` for *any* symmetric ``Y``: an inexact inverse costs strength only."""
-        y = symmetric_inverse(point)
-        traces = np.trace(y, axis1=-2, axis2=-1)
-        slope = self.weights[:, None, None] * (y @ y)
-        return Tangent(slope, float((self._baseline - 2 * self.weights * traces).sum()))
+        """``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for *any* ``Y``: an inexact inverse costs strength only."""
+        value = 2 * self.weights * self._traces(self._fenchel(point))
+        return Tangent(self.gradient(point), float((self._baseline - value).sum()))
 
     def target_tangents(self, point: FloatArray) -> TargetTangents:
         """Return the tangent target by target."""
-        y = symmetric_inverse(point)
-        traces = 2 * self.weights * np.trace(y, axis1=-2, axis2=-1)
-        weights, sizes = self.weights[:, None, None], abs(y)
+        y, weights = self._fenchel(point), self.weights[:, None, None]
+        values, turned = 2 * self.weights * self._traces(y), np.swapaxes(y, -1, -2)
         return TargetTangents(
-            slope=weights * (y @ y),
-            size=weights * (sizes @ sizes),
-            offset=self._baseline - traces,
-            scale=abs(self._baseline) + abs(traces),
+            slope=weights * (y @ turned),
+            size=weights * (abs(y) @ abs(turned)),
+            offset=self._baseline - values,
+            scale=abs(self._baseline) + 2 * self.weights * self._traces(abs(y), absolute=True),
         )
+
+    def _fenchel(self, point: FloatArray) -> FloatArray:
+        """(..., M, d, q) ``L^{-1} C'``."""
+        inverse = symmetric_inverse(point)
+        return inverse if self.output is None else np.asarray(inverse @ np.swapaxes(self.output, -1, -2))
+
+    def _traces(self, y: FloatArray, *, absolute: bool = False) -> FloatArray:
+        """(M,) ``tr(C_j Y_j)`` of (M, d, q) matrices, or with the sizes of the entries of ``C_j``."""
+        if self.output is None:
+            return np.asarray(np.trace(y, axis1=-2, axis2=-1))
+        return np.asarray(np.einsum("mqd,mdq->m", abs(self.output) if absolute else self.output, y))
 
     def marginals_beyond(self, base: FloatArray, information: FloatArray) -> FloatArray:
         """Bound marginals beyond the base by those at the base, or at a point of lower rank below its covariance."""
-        alone = self.criterion(base)[:, None] - self.criterion(base[:, None] + information)
-        values, vectors = np.linalg.eigh(symmetric_inverse(base))
+        covariance = symmetric_inverse(base)
+        values, vectors = np.linalg.eigh(covariance)
         root = (vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]) @ np.swapaxes(vectors, -1, -2)
         q = np.linalg.eigvalsh(root[:, None] @ information @ root[:, None])[..., 1:].clip(0.0)
-        lower_rank = self.weights * self._largest_output(base)[:, None] * (q / (1 + q)).sum(axis=-1)
+        alone = self.criterion(base)[:, None] - self.criterion(base[:, None] + information)
+        return self._larger_of(alone, q, self._largest_counted(covariance)[:, None])
+
+    def largest_marginals(self) -> FloatArray:
+        """(n, M) the larger of both kinds of extreme points."""
+        values, vectors = np.linalg.eigh(self.prior)
+        root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
+        q = _upper_eigenvalues(root, self.information).clip(0.0)
+        alone = self.criterion(self.prior_information) - self.criterion(self.prior_information + self.information)
+        return self._larger_of(alone, q, self._largest_counted(self.prior))
+
+    def _largest_counted(self, covariance: FloatArray) -> FloatArray:
+        """(..., M) largest eigenvalue of the covariance of what counts."""
+        return np.asarray(np.linalg.eigvalsh(self.counted(covariance))[..., -1])
+
+    def _larger_of(self, alone: FloatArray, q: FloatArray, largest: FloatArray) -> FloatArray:
+        """(..., M) the larger marginal: of ``alone``, and of lower rank by ``q`` (..., M, d - 1) and ``largest``."""
+        lower_rank = self.weights * largest * (q / (1 + q)).sum(axis=-1)
         return np.asarray(np.maximum(alone, lower_rank) * (1 + MARGIN))
 
-    def _largest_output(self, base: FloatArray) -> FloatArray:
-        """(..., M) the largest eigenvalue of the covariance of what counts."""
-        return np.asarray(np.linalg.eigvalsh(symmetric_inverse(base))[..., -1])
-
     def conic_value(self, posterior: Sequence[Any]) -> Any:
-        """``sum_j w_j [tr(prior_j) - tr_inv(L_j)]`` in cvxpy."""
+        """``sum_j w_j [tr(C prior_j C') - sum_q c_q' L_j^{-1} c_q]`` in cvxpy."""
         import cvxpy as cp
 
-        traces = sum(w * cp.tr_inv(L) for w, L in zip(self.weights, posterior, strict=True))
-        return self._baseline.sum() - traces
+        parts = zip(self.weights, self._outputs, posterior, strict=True)
+        return self._baseline.sum() - sum(w * sum(cp.matrix_frac(row, L) for row in C) for w, C, L in parts)
 
     def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
-        """``Y = L^{-1}`` of every target, packed."""
-        return packed(symmetric_inverse(point))
+        """``Y = L^{-1} C'`` of every target: packed if the whole state counts, else row by row."""
+        y = self._fenchel(point)
+        rows: list[Any] = packed(y) if self.output is None else y.reshape(len(point), -1).tolist()
+        return rows
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """0, and the larger of both kinds of extreme points."""
         return np.zeros(self.n), np.asarray(self.largest_marginals().sum(axis=-1))
 
-    def largest_marginals(self) -> FloatArray:
-        """(n, M) the larger of both kinds of extreme points."""
-        return self._largest_marginals(np.asarray(np.linalg.eigvalsh(self.prior)[:, -1], dtype=np.float64))
-
-    def _largest_marginals(self, largest: FloatArray) -> FloatArray:
-        """Bound each marginal, given ``lambda_max(P0)`` (M,) of the part of the state that counts."""
-        values, vectors = np.linalg.eigh(self.prior)
-        root = (vectors * np.sqrt(values)[:, None, :]) @ np.swapaxes(vectors, -1, -2)
-        q = _upper_eigenvalues(root, self.information).clip(0.0)
-        lower_rank = self.weights * largest * (q / (1 + q)).sum(axis=-1)
-        alone = self.criterion(self.prior_information) - self.criterion(self.prior_information + self.information)
-        return np.asarray(np.maximum(alone, lower_rank) * (1 + MARGIN))
-
     @property
-    def output_square(self) -> FloatArray:
-        """(M, d, d) ``W = C'C``; the identity if the whole state counts."""
-        return np.broadcast_to(np.eye(self.dimension), self.prior.shape)
+    def _outputs(self) -> FloatArray:
+        """(M, q, d) ``C``; the identity if the whole state counts."""
+        return np.broadcast_to(np.eye(self.dimension), self.prior.shape) if self.output is None else self.output
 
     def marginal_minorant(self, added: FloatArray, others: OtherElements, share: FloatArray) -> SeparableMinorant:
         """The tangent in ``P`` at the relaxed context, its rising part made linear, its falling part by owners."""
         posterior = self.prior_information + others.mixed(share)
         covariance, after = symmetric_inverse(posterior), symmetric_inverse(posterior + added)
         # (1 + P X)^{-1} = (L + X)^{-1} L, hence G = W - L B W B L with B = (L + X)^{-1}.
-        shrunk = after @ posterior
-        slope = self.output_square - np.swapaxes(shrunk, -1, -2) @ self.output_square @ shrunk
-        value = _pairs(self.output_square, covariance - after)
+        shrunk, square = after @ posterior, np.swapaxes(self._outputs, -1, -2) @ self._outputs
+        slope = square - np.swapaxes(shrunk, -1, -2) @ square @ shrunk
+        value = _pairs(square, covariance - after)
         gains, axes = np.linalg.eigh(slope)
         rising = (axes * np.clip(gains, 0.0, None)[:, None, :]) @ np.swapaxes(axes, -1, -2)
         falling = np.clip(-gains, 0.0, None) * self.weights[:, None]
@@ -201,93 +209,6 @@ class TraceObjective(StateCriterion):
         kept = np.where(others.regular, np.minimum(own, reserve[others.owners]), reserve[others.owners]).sum(axis=-1)
         constant = float(np.einsum("mak,mab,mbk,mk->", rest, self.prior, rest, strength)) / PRIOR_SHARE
         return SeparableMinorant(constant, kept, reserve.sum(axis=-1))
-
-
-class OutputTraceObjective(TraceObjective):
-    """The trace of a part of the state; made by ``TraceObjective(..., output=C)``.
-
-    Raises
-    ------
-    InputError : ``output`` has another shape, or its rows depend on each other.
-    """
-
-    __slots__ = ()
-
-    name: ClassVar[str] = "trace"
-    unit: ClassVar[str] = "m²"
-    output: FloatArray
-    stated = StateCriterion.stated
-    error_scale = StateCriterion.error_scale
-    target_criterion = InformationObjective.criterion_of_one
-    marginal_minorant = TraceObjective.marginal_minorant
-    marginals_beyond = TraceObjective.marginals_beyond
-
-    @property
-    def output_square(self) -> FloatArray:
-        """(M, d, d) ``W = C'C``."""
-        return np.asarray(np.swapaxes(self.output, -1, -2) @ self.output)
-
-    @property
-    def prior_criterion(self) -> float:
-        """``sum_j w_j tr(C_j prior_j C_j')``."""
-        return float(self._baseline.sum())
-
-    def criterion(self, posterior_information: FloatArray) -> FloatArray:
-        """(..., M) weighted traces of the outputs' covariances."""
-        return np.asarray(self.weights * output_traces(posterior_information, self.output))
-
-    def gradient(self, posterior_information: FloatArray) -> FloatArray:
-        """``w_j Lambda_j^{-1} W_j Lambda_j^{-1}``: (..., M, d, d)."""
-        y = self._fenchel(posterior_information)
-        return np.asarray(self.weights[:, None, None] * (y @ np.swapaxes(y, -1, -2)))
-
-    def tangent(self, point: FloatArray, target: int | None) -> Tangent:  # noqa: ARG002  (it bounds the sum)
-        """``tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y)`` for *any* ``Y``: an inexact inverse costs strength only."""
-        value = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, self._fenchel(point))
-        return Tangent(self.gradient(point), float((self._baseline - value).sum()))
-
-    def target_tangents(self, point: FloatArray) -> TargetTangents:
-        """Return the tangent target by target."""
-        y, weights = self._fenchel(point), self.weights[:, None, None]
-        values = 2 * self.weights * np.einsum("mqd,mdq->m", self.output, y)
-        sizes = 2 * self.weights * np.einsum("mqd,mdq->m", abs(self.output), abs(y))
-        return TargetTangents(
-            slope=weights * (y @ np.swapaxes(y, -1, -2)),
-            size=weights * (abs(y) @ abs(np.swapaxes(y, -1, -2))),
-            offset=self._baseline - values,
-            scale=abs(self._baseline) + sizes,
-        )
-
-    def _largest_output(self, base: FloatArray) -> FloatArray:
-        """(..., M) the largest eigenvalue of the covariance of what counts."""
-        outputs = self.output @ symmetric_inverse(base) @ np.swapaxes(self.output, -1, -2)
-        return np.asarray(np.linalg.eigvalsh(outputs)[..., -1])
-
-    def conic_value(self, posterior: Sequence[Any]) -> Any:
-        """``sum_j w_j [tr(C prior_j C') - sum_q c_q' L_j^{-1} c_q]`` in cvxpy."""
-        import cvxpy as cp
-
-        parts = zip(self.weights, self.output, posterior, strict=True)
-        return self._baseline.sum() - sum(w * sum(cp.matrix_frac(row, L) for row in C) for w, C, L in parts)
-
-    def fenchel_point(self, point: FloatArray, target: int | None) -> list[Any]:  # noqa: ARG002  (it bounds the sum)
-        """``Y = L^{-1} C'`` of every target, row by row."""
-        rows: list[Any] = self._fenchel(point).reshape(len(point), -1).tolist()
-        return rows
-
-    marginal_ends = TraceObjective.marginal_ends
-
-    def largest_marginals(self) -> FloatArray:
-        """(n, M) the larger of both kinds of extreme points, with ``lambda_max(C P0 C')`` for those of lower rank."""
-        outputs = self.output @ self.prior @ np.swapaxes(self.output, -1, -2)
-        return self._largest_marginals(np.asarray(np.linalg.eigvalsh(outputs)[:, -1], dtype=np.float64))
-
-    def _fenchel(self, point: FloatArray) -> FloatArray:
-        """(..., M, d, q) ``L^{-1} C'``."""
-        return np.asarray(symmetric_inverse(point) @ np.swapaxes(self.output, -1, -2))
-
-
-TraceObjective.of_part = OutputTraceObjective
 
 
 def _upper_eigenvalues(root: FloatArray, matrices: FloatArray) -> FloatArray:

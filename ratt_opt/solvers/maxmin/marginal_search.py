@@ -177,7 +177,7 @@ class MarginalSearch(SearchByLevels):
     @classmethod
     def of(cls, known: Known, elements: Elements) -> MarginalSearch | None:
         """The search if gains diminish, as those of log-determinants do, and there are not too many plans."""
-        diminish = known.task.objective.compiled_code == LogDetObjective.compiled_code
+        diminish = known.task.objective.compiled_code == LogDetObjective.native_kernel
         choices = elements.problem.choices
         fits = len(choices) <= MOST_ROBOTS and np.prod([float(len(choice)) for choice in choices]) <= MOST_PLANS
         return cls(known, elements) if diminish and fits else None

@@ -43,7 +43,7 @@ NEARLY, MORE_NODES = 5e-3, 500
 107), end after 220 and 471 nodes, and not within 15 seconds if they are given up at 100."""
 TREE_NODES, TREE_GROWTH = 100, 1.5
 """Nodes of a later tree before it is given up, and how many times as many the next one then has."""
-SUMS = frozenset((TraceObjective.compiled_code, LogDetObjective.compiled_code))
+SUMS = frozenset((TraceObjective.native_kernel, LogDetObjective.native_kernel))
 """Criteria that are sums over targets."""
 UNSEEN = 0.25
 """Least share of pairs of an element and a target without information for a search in depth."""

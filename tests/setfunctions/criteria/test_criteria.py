@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import pickle
-from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attack.team import Team
 from ratt_opt.setfunctions.criteria.registry import CRITERIA, get_criterion
-from ratt_opt.setfunctions.criterion_parts import OPTIONAL_PARTS, CriterionParts
 from ratt_opt.setfunctions.information import InformationObjective, from_triangles, triangles
 from tests.strategies import OBJECTIVES, information_data
 
@@ -81,8 +79,6 @@ def test_the_planar_and_the_general_formula_agree(criterion):
     for _ in range(40):
         f = draw(rng, criterion, 2)
         rows = np.stack([random_information(rng, f) for _ in range(5)])
-        entries = rows[..., 0, 0], rows[..., 0, 1], rows[..., 1, 1]
-        assert f.planar_criterion(*entries) == pytest.approx(f.criterion(rows), rel=1e-12)
         if f.compiled_code is None:
             continue
         # The same targets with a third coordinate of its own: the general formula.
@@ -93,33 +89,18 @@ def test_the_planar_and_the_general_formula_agree(criterion):
         assert general.criterion(wide) - known == pytest.approx(f.criterion(rows), rel=1e-9)
 
 
-def test_parts_are_inherited_with_the_formula_they_belong_to_and_not_without_it():
+def test_parts_are_inherited_with_the_formula_they_belong_to_and_another_formula_is_refused():
     class Renamed(ro.LogDetObjective):
         """The same formula with data of its own."""
 
         __slots__ = ("note",)
 
-    class Other(ro.LogDetObjective):
-        """Another formula: nothing that is proved of log-det holds of it."""
-
-        def criterion(self, posterior_information):
-            return 2 * super().criterion(posterior_information) ** 3
-
-    class Stated(ro.LogDetObjective):
-        """Another formula that says what it is."""
-
-        is_submodular: ClassVar[bool] = True
-
-        def gradient(self, posterior_information):
-            return super().gradient(posterior_information)
-
-    for part in OPTIONAL_PARTS:
-        assert getattr(Renamed, part) is getattr(ro.LogDetObjective, part)
-        assert getattr(Other, part) is getattr(CriterionParts, part)
-        assert part == "is_submodular" or getattr(Stated, part) is getattr(CriterionParts, part)
-    assert Stated.is_submodular
-    assert not Other.overrides("marginal_minorant")
     assert Renamed.overrides("marginal_minorant")
+    assert Renamed.target_tangents is ro.LogDetObjective.target_tangents
+    for part in ("criterion", "value", "gradient"):
+        for base in (*CRITERIA.values(), Renamed):
+            with pytest.raises(ro.InputError, match="Other must subclass InformationObjective"):
+                type("Other", (base,), {part: lambda self, posterior_information: 2.0})  # noqa: ARG005
 
 
 def test_what_is_missing_is_refused_by_its_name():

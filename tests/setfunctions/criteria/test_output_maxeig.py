@@ -199,8 +199,8 @@ def test_an_output_is_not_of_the_log_det(tmp_path) -> None:
     path.write_text(json.dumps(document))
     with pytest.raises(ProofError, match="the log-det has no output"):
         verify_certificate(path)
-    with pytest.raises(TypeError):
-        LogDetObjective(np.eye(2)[None], np.eye(2)[None, None], output=np.eye(2))  # type: ignore[call-arg]
+    with pytest.raises(InputError, match="output must be None"):
+        LogDetObjective(np.eye(2)[None], np.eye(2)[None, None], output=np.eye(2))
 
 
 def test_what_it_has_no_form_for_is_refused_by_name() -> None:

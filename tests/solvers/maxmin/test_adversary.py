@@ -20,7 +20,7 @@ BUDGETS = ((5, 0, 6), (5, 1, 4), (6, 0, 9), (6, 1, 7), (6, 2, 6), (6, 0, 11))
 
 def test_criteria_without_compiled_code_are_attacked_too():
     class Own(ro.TraceObjective):
-        compiled_code = None  # as in a criterion of one's own
+        native_kernel = None  # as in a criterion of one's own
 
     shown = ro.network_scenario("disk-6", 16, 3, alpha_s=3, alpha_c=6, seed=0).problem()
     own = Own(shown.objective.prior, shown.objective.information)

@@ -104,7 +104,7 @@ def check_kept(objective: InformationObjective, choices: CoverChoices, kept: Any
 
 def packed_elements(count: int, targets: int = 2, **changed: Any) -> PackedElements:
     given: dict[str, Any] = {
-        "criterion": CRITERIA["logdet"].compiled_code,
+        "criterion": CRITERIA["logdet"].native_kernel,
         "dimension": 2,
         "weights": np.ones(targets),
         "baseline": np.zeros(targets),
