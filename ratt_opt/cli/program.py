@@ -124,7 +124,7 @@ def _with_current_names(arguments: list[str]) -> list[str]:
 
 def _usage_text(error: Any, arguments: list[str]) -> str:
     """Typer's message, with the value it refused if it does not show it."""
-    text = str(error.format_message()).rstrip(".")
+    text = str(error.format_message()).rstrip(".").replace("': Value error, '", "': '")
     option = re.search(r"Invalid value for '(--[\w-]+)'", text)
     if option and option[1] in arguments[:-1]:
         value = arguments[arguments.index(option[1]) + 1]

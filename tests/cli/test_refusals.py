@@ -16,7 +16,10 @@ NEW = ["new", "--sensing-attacks", "1", "--link-attacks", "1", "--out", "OUT/s.j
 BAD = [
     (["bound", "OUT/none.json", "--out", "OUT/o"], "none.json must be a file that can be read"),
     (["bound", "FILE", "--out", "FILE"], "out must be a folder that can be written"),
-    (["bound", "FILE", "--out", "OUT/o", "--objective", "area"], "area"),
+    (
+        ["bound", "FILE", "--out", "OUT/o", "--objective", "area"],
+        "Invalid value for '--objective': 'area' is not one of",
+    ),
     (["bound", "FILE", "--out", "OUT/o", "--time-limit", "-1"], "time_limit must be"),
     (["bound", "FILE", "--out", "OUT/o", "--gap", "-1"], "gap must be a number >= 0; got -1.0"),
     (["bound", "FILE", "--out", "OUT/o", "--time-limit", "soon"], "soon"),
