@@ -117,6 +117,12 @@ from .missions.bags.loop import BagReplay as BagReplay, replay_bag as replay_bag
 from . import studies as studies
 from . import planners as planners
 
+# == The open benchmark
+from .benchmark.instances.instance import BenchmarkInstance as BenchmarkInstance, read_instance as read_instance
+from .benchmark.instances.library import BenchmarkLibrary as BenchmarkLibrary
+from .benchmark.proofs.records import submit_record as submit_record, verify_benchmark as verify_benchmark
+from .benchmark.runs.runner import run_benchmark as run_benchmark
+
 # == Guarantees and bounds
 from .bounds.guarantees import (
     Guarantee as Guarantee,

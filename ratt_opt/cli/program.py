@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from ratt_opt._version import __version__
+from ratt_opt.cli import benching
 from ratt_opt.cli.attacking import attack
 from ratt_opt.cli.cutting import cuts
 from ratt_opt.cli.exit_codes import BAD_INPUT, INTERRUPTED, NO_OUTPUT, REFUTED, UNDECIDED
@@ -68,6 +69,18 @@ app = typer.Typer(
 )
 for command in (demo, new, bound, attack, cuts, track, replay, verify, audit, schema):
     app.command(cls=_Command)(command)
+
+bench = typer.Typer(
+    name="bench",
+    cls=_CommandGroup,
+    help="The open benchmark: list instances, run solvers, verify and enter records, write the page.",
+    add_completion=False,
+    rich_markup_mode=None,
+)
+bench.command("list", cls=_Command)(benching.list_instances)
+for about_records in (benching.run, benching.verify, benching.submit, benching.page):
+    bench.command(cls=_Command)(about_records)
+app.add_typer(bench)
 
 # Typer's own usage errors (unknown option, missing value, ...) share this base; typer does not export it.
 _UsageError: Any = typer.BadParameter.__mro__[1]

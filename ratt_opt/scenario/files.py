@@ -22,7 +22,7 @@ from ratt_opt.scenario.model import Scenario
 if TYPE_CHECKING:
     from ratt_opt.scenario.record import Record
 
-__all__ = ["load_input", "load_scenario", "read_bytes", "read_json", "save_scenario", "scenario_schema"]
+__all__ = ["load_input", "load_scenario", "parse_json", "read_bytes", "read_json", "save_scenario", "scenario_schema"]
 
 LARGEST_FILE = 256 * 2**20
 """Bytes; a longer input file is refused, and never held whole."""
@@ -115,7 +115,12 @@ def read_json(path: str | Path) -> Any:
     ------
     FileFormatError : any of these is broken, with the line if one is known.
     """
-    text = _read_text(Path(path))
+    return parse_json(read_bytes(Path(path)), path)
+
+
+def parse_json(raw: bytes, path: str | Path) -> Any:
+    """Read strict JSON from the bytes of a file, as :func:`read_json`; ``path`` is for its errors."""
+    text = _decoded(raw, path)
     try:
         document = json.loads(text, object_pairs_hook=_refuse_repeats)
     except json.JSONDecodeError as error:
@@ -155,9 +160,9 @@ def _refuse_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return document
 
 
-def _read_text(path: Path) -> str:
+def _decoded(raw: bytes, path: str | Path) -> str:
     try:
-        return read_bytes(path).removeprefix(BOM_UTF8).decode("utf-8")
+        return raw.removeprefix(BOM_UTF8).decode("utf-8")
     except UnicodeDecodeError as error:
         raise FileFormatError(str(path), "must be UTF-8 text", f"byte {error.start} is not") from None
 
