@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Candidate", "candidates"]
 
+AGAIN = {"": 0, "-b": 100}
+"""Ending of a name -> what is added to its seed: two instances of each size."""
 CRITERIA = ("trace", "logdet", "maxeig")
 GRAPHS: dict[str, Callable[[], nx.Graph]] = {
     "petersen": nx.petersen_graph,
@@ -82,10 +85,10 @@ def _paper() -> Iterator[Candidate]:
     """Section VI of the paper: its budgets, three criteria."""
     for n, m, budgets in ((4, 4, ((1, 3), (2, 4))), (10, 15, ((3, 11), (5, 15), (6, 22))), (20, 20, ((6, 47),))):
         for alpha_s, alpha_c in budgets:
-            for seed, objective in enumerate(CRITERIA):
-                named = {"alpha_s": alpha_s, "alpha_c": alpha_c, "seed": seed}
+            for again, (seed, objective) in product(AGAIN, enumerate(CRITERIA)):
+                named = {"alpha_s": alpha_s, "alpha_c": alpha_c, "seed": seed + AGAIN[again]}
                 draw = _of_scenario(ro.random_scenario, n, m, **named)
-                name = f"paper-{objective}-n{n:02}-a{alpha_s}-c{alpha_c}"
+                name = f"paper-{objective}-n{n:02}-a{alpha_s}-c{alpha_c}{again}"
                 yield _candidate(name, "paper", _call("random_scenario", (n, m), named), objective, draw)
 
 
@@ -93,21 +96,22 @@ def _views() -> Iterator[Candidate]:
     """Cameras that turn, on the complete graph and on disks."""
     for n, m, alpha_s in ((5, 4, 1), (6, 6, 2), (8, 6, 2), (10, 8, 2), (14, 10, 3)):
         for objective in ("trace", "logdet"):
-            for reach in (None, 30.0):
-                named = {"alpha_s": alpha_s, "alpha_c": 2 if reach else 0, "seed": n, "communication_range": reach}
+            for again, reach in product(AGAIN, (None, 30.0)):
+                budgets = {"alpha_s": alpha_s, "alpha_c": 2 if reach else 0}
+                named = {**budgets, "seed": n + AGAIN[again], "communication_range": reach}
                 draw = _of_scenario(ro.limited_view_scenario, n, m, **named)
-                name = f"views-{objective}-n{n:02}-a{alpha_s}-{'disk' if reach else 'complete'}"
+                name = f"views-{objective}-n{n:02}-a{alpha_s}-{'disk' if reach else 'complete'}{again}"
                 yield _candidate(name, "limited views", _call("limited_view_scenario", (n, m), named), objective, draw)
 
 
 def _networks() -> Iterator[Candidate]:
     """Random networks: disks, small worlds, hubs, dense ones."""
     for family in ("disk-6", "disk-12", "small-world", "hubs", "dense"):
-        for n, objective in ((8, "logdet"), (12, "trace"), (16, "maxeig"), (24, "trace")):
-            named = {"alpha_s": 0.2, "alpha_c": 0.15, "seed": n}
+        for again, (n, objective) in product(AGAIN, ((8, "logdet"), (12, "trace"), (16, "maxeig"), (24, "trace"))):
+            named = {"alpha_s": 0.2, "alpha_c": 0.15, "seed": n + AGAIN[again]}
             draw = _of_scenario(ro.network_scenario, family, n, n, **named)
             source = _call("network_scenario", (family, n, n), named)
-            yield _candidate(f"{family}-{objective}-n{n:02}", family, source, objective, draw)
+            yield _candidate(f"{family}-{objective}-n{n:02}{again}", family, source, objective, draw)
 
 
 def _doppler() -> Iterator[Candidate]:
@@ -132,7 +136,7 @@ def _coverage() -> Iterator[Candidate]:
     """Resilient coverage (Shi, Zhou, Tokekar): robots' paths cover targets, robots are lost."""
     sizes = ((5, 4, 30, 1), (6, 5, 40, 2), (8, 5, 60, 2), (8, 7, 80, 3), (10, 7, 100, 3))
     for robots, paths, targets, lost in sizes:
-        for seed in (0, 1):
+        for seed in (0, 1, 2):
 
             def problem(r: int = robots, p: int = paths, t: int = targets, a: int = lost, seed: int = seed) -> Form:
                 rng = np.random.default_rng(seed)
@@ -170,7 +174,7 @@ def _coverage() -> Iterator[Candidate]:
 def _facilities() -> Iterator[Candidate]:
     """Facility location under interdiction: open p of n sites, some are lost."""
     for chosen, sites, lost in ((3, 8, 1), (4, 10, 1), (4, 12, 2), (5, 14, 2)):
-        for seed in (0, 1):
+        for seed in (0, 1, 2):
 
             def problem(p: int = chosen, n: int = sites, a: int = lost, seed: int = seed) -> Form:
                 places = np.random.default_rng(seed).integers(0, 13, (n, 2))

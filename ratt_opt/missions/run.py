@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import Threatened
     from ratt_opt.scenario.model import Scenario
 
-__all__ = ["SHARING", "run_mission"]
+__all__ = ["SHARING", "Flight", "Players", "run_mission"]
 
 SHARING = ("best group", "all surviving")
 MOST_STEPS = 10**6
@@ -104,13 +104,13 @@ def run_mission(
         raise InputError("sharing", f"must be {' or '.join(SHARING)}", sharing)
     planner, attacker = current_name("planner", planner), current_name("attacker", attacker)
     world = World(scenario, model or MissionModel(), horizon)
-    players = _Players(get_planner(planner), get_attacker(attacker), attack_model(attacks))
+    players = Players(get_planner(planner), get_attacker(attacker), attack_model(attacks))
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
     settings = {name: _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
     log = Journal.open(journal, scenario, settings | {"model": _described(world.model)})
     settings |= {name: _described(getattr(world.model, name)) for name in ("motion", "area")}
-    flight = _Flight(world, players, sharing, seed)
+    flight = Flight(world, players, sharing, seed)
     for step in range(steps):
         flight.advance(step, log)
         if progress is not None:
@@ -126,16 +126,18 @@ def run_mission(
 
 
 @dataclass(frozen=True, slots=True)
-class _Players:
+class Players:
+    """Planner, attacker, and how long attacks last."""
+
     plan: Planner
     attack: Attacker
     model: AttackModel
 
 
-class _Flight:
+class Flight:
     """The state of a mission under way."""
 
-    def __init__(self, world: World, players: _Players, sharing: str, seed: int) -> None:
+    def __init__(self, world: World, players: Players, sharing: str, seed: int) -> None:
         self.world, self.players, self.sharing, self.seed = world, players, sharing, seed
         scenario = world.scenario
         belief = world.motion.initial(scenario)
@@ -150,21 +152,34 @@ class _Flight:
 
     def advance(self, step: int, log: Journal) -> None:
         """One step of everything."""
-        threatened = self.players.model.threatened(step, self.attack, self.world.scenario)
         began = perf_counter()
-        now = Now(step, step * self.world.period, self.poses, tuple(self.attacks))
-        team = plan_team(self.world, self.memory, now, threatened)
-        self.memory = team.memory
+        threatened = self.threatened(step)
+        team = self.prepare(step)
         recorded = log.recorded(step)
         if recorded is None:
             elements = team.chosen(self._planned)
             self.seconds.append(perf_counter() - began)
-            self.attack = self._attacked(step, team, elements, threatened)
+            self.attack = self.attacked(step, team, elements, threatened)
             log.append(step, elements, self.attack)
         else:
             elements, self.attack = recorded
             self.seconds.append(0.0)
             team.problem.check_plan(elements)
+        self.fly(step, team, elements)
+
+    def threatened(self, step: int) -> Threatened:
+        """Return what stands failed, and what the adversary may still do in a step."""
+        return self.players.model.threatened(step, self.attack, self.world.scenario)
+
+    def prepare(self, step: int) -> TeamPlan:
+        """Return the choices of the team in a step, after it has shared what it knows."""
+        now = Now(step, step * self.world.period, self.poses, tuple(self.attacks))
+        team = plan_team(self.world, self.memory, now, self.threatened(step))
+        self.memory = team.memory
+        return team
+
+    def fly(self, step: int, team: TeamPlan, elements: IntArray) -> None:
+        """Move robots and targets, measure under the attack in force, and keep the step."""
         self.decisions.append((elements, self.attack))
         if not self.attacks or self.attacks[-1][1] != self.attack:
             self.attacks.append((step, self.attack))
@@ -176,7 +191,7 @@ class _Flight:
     def _planned(self, part: PlanningGroup) -> IntArray:
         return elements_of(planned_with(self.players.plan, part.problem, part.world), part.problem)
 
-    def _attacked(self, step: int, team: TeamPlan, elements: IntArray, threatened: Threatened) -> Attack:
+    def attacked(self, step: int, team: TeamPlan, elements: IntArray, threatened: Threatened) -> Attack:
         """Return the attack in force in this step: standing failures and the attacker's new ones."""
         standing = threatened.standing
         sensors, links = self.players.model.strikes(
