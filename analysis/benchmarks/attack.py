@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 import networkx as nx
 import numpy as np
 
-from analysis.caa_conjecture import range_of
 from analysis.tables import append_csv, print_table
 from ratt_opt._rounding import relative_gap
 from ratt_opt.attack.bounds import forced_group_bound
@@ -35,6 +34,7 @@ from ratt_opt.solvers.ratt import ratt
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from ratt_opt import Scenario
     from ratt_opt.problem import Problem
 
 SETTINGS = {
@@ -46,6 +46,14 @@ SETTINGS = {
     100: (100, ((33, 1237), (50, 1650))),
 }
 """Robots -> targets and the budgets (sensing, links): a third, a half, two thirds; a quarter, a third, a half."""
+
+
+def range_of(scenario: Scenario, degree: float) -> float:
+    """Communication range [m] that gives robots that many links on average."""
+    position = np.array([(robot.x, robot.y) for robot in scenario.robots])
+    distance = np.linalg.norm(position[:, None] - position, axis=-1)
+    pairs = np.sort(distance[np.triu_indices(len(position), 1)])
+    return float(pairs[round(len(position) * degree / 2) - 1]) * (1 + 1e-9)
 
 
 def processor_seconds(run: Callable[[], object]) -> float:

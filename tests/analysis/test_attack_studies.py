@@ -4,7 +4,6 @@ import csv
 
 import pytest
 
-from analysis import caa_conjecture, caa_validation
 from analysis.benchmarks import attack
 from analysis.benchmarks.network_tables import network_table, read_rows, summary
 from analysis.tables import append_csv, print_table, write_csv
@@ -19,40 +18,6 @@ def test_tables_are_printed_and_written(tmp_path, capsys):
     write_csv(tmp_path / "new" / "t.csv", rows)
     with (tmp_path / "new" / "t.csv").open() as file:
         assert [float(row["value"]) for row in csv.DictReader(file)] == [1 / 3, 2.0]
-
-
-def test_validation_finds_a_wrong_formula(monkeypatch):
-    right = caa_validation.complete_graphs.__globals__["caa"]
-    assert not caa_validation._differs(caa_validation.nx.complete_graph(5), 6, "partitions")
-
-    class Wrong:
-        n_max = 4
-
-    monkeypatch.setattr(caa_validation, "caa", lambda n, c: Wrong if (n, c) == (5, 6) else right(n, c))
-    assert caa_validation._differs(caa_validation.nx.complete_graph(5), 6, "partitions")
-    assert caa_validation._differs(caa_validation.nx.complete_graph(5), 6, "enumeration")
-
-
-def test_other_graphs_never_have_a_larger_group_than_the_complete_one():
-    for row in caa_validation.other_graphs(12, 1):
-        assert row["mean_exact_n_max"] <= row["mean_caa_n_max"]
-
-
-def test_the_even_split_is_an_attack_and_no_worse_than_the_exact_one():
-    for seed in range(3):
-        run = caa_conjecture.one_run((6, 4, 2, 8), "trace", seed)
-        assert run["worst"] <= run["even_split"] + 1e-12
-        assert run["worst"] <= min(run["greedy"], run["bounded_rational"], run["random"]) + 1e-12
-    assert caa_conjecture.summary([run])[0]["mean_even_split"] == run["even_split"] / run["worst"]
-    assert caa_conjecture.grid([run])[0]["alpha_c"] == 8
-    assert "minimising the largest group is the worst attack in" in caa_conjecture.conclusion("Title", [run])
-
-
-def test_the_study_s_sparse_graphs_have_the_links_asked_for():
-    run = caa_conjecture.one_run((14, 4, 2, 4), "trace", 0, 4.0)
-    assert run["links"] == 28
-    assert run["worst"] <= run["greedy"]
-    assert caa_conjecture.used([run]) == ["bounded_rational", "greedy", "random"]
 
 
 def test_the_benchmark_s_plain_ways_agree():

@@ -6,10 +6,12 @@ from itertools import combinations_with_replacement
 
 import pytest
 
-from analysis.caa_conjecture import SETTINGS
 from ratt_audit.enumeration.setting import splits
 from ratt_opt import caa
 from ratt_opt.graph.survivor_sizes import non_dominated_sizes
+
+SETTINGS = ((4, 4, 1, 3), (4, 4, 2, 4), (10, 15, 3, 11), (10, 15, 5, 15), (10, 15, 6, 22))
+"""(robots, targets, sensing attacks, link attacks) of the paper's Section VI."""
 
 
 def seeing(groups, blinded):

@@ -2,32 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
 import ratt_opt as ro
-from analysis.missions import consistency, exact_flights, flights
+from analysis import consistency
 from ratt_opt.studies import MISSION_METRICS, Case, Seeds, Study, SweepError, mission_study, run
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.studies.cases import Cell
-
-
-def test_every_planner_and_attacker_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(flights, "STEPS", 4)
-    monkeypatch.setattr(flights, "SETTLED", 1)
-    for study in (flights.STUDIES[0], flights.MILD, exact_flights.STUDIES[0]):
-        case = replace(study.cases[0], n_robots=3, n_targets=2, alpha_c=1, alpha_s=1)
-        row = flights.measure(study, case, Seeds.of(1, 0))
-        assert len(row) == len(study.planner_names) * len(study.attacker_names) * len(study.metrics)
-        assert row == flights.measure(study, case, Seeds.of(1, 0))
-        assert all(float(value) > 0 for value in row.values())
-    assert row["maxmin/worst/trace"] <= row["ratt/worst/trace"] * 1.5
 
 
 def test_the_second_order_term_tells_the_error(monkeypatch: pytest.MonkeyPatch) -> None:

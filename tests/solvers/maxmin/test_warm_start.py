@@ -7,10 +7,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from analysis.benchmarks.warm import moved
-from ratt_opt import InputError, exhaustive_optimum, greedy, random_scenario, solve_maxmin
+from ratt_opt import InputError, Scenario, exhaustive_optimum, greedy, random_scenario, solve_maxmin
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
+
+
+def moved(scenario: Scenario, plan: np.ndarray) -> Scenario:
+    """The scenario one period later, each robot having carried out its element of the plan."""
+    poses = scenario.predicted_poses[plan]
+    robots = [
+        robot.replace(x=float(x), y=float(y), heading=float(np.arctan2(np.sin(angle), np.cos(angle))))
+        for robot, (x, y, angle) in zip(scenario.robots, poses.tolist(), strict=True)
+    ]
+    targets = [
+        target.replace(x=float(x), y=float(y), heading=target.heading + scenario.sampling_period * target.turn_rate)
+        for target, (x, y) in zip(scenario.targets, scenario.predicted_targets.tolist(), strict=True)
+    ]
+    return scenario.replace(robots=tuple(robots), targets=tuple(targets))
 
 
 @settings(max_examples=25, deadline=None)

@@ -1,6 +1,6 @@
 """Consistency of the filter's covariance: one step at the paper's nine large cases, for each linearisation.
 
-``python -m analysis.missions.consistency --trials 40 --out DIR``
+``python -m analysis.consistency --trials 40 --out DIR``
 """
 
 from __future__ import annotations
