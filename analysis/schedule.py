@@ -6,17 +6,16 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.attack.params import AttackParams
-from ratt_opt.attack.size_vectors.size_vector_search import stages_of
-from ratt_opt.attack.stages.schedule import criterion_stages, stages_by_values
+from ratt_opt.attack.size_vectors.size_stages import SIZE_STAGES
+from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-PARAMS = AttackParams()
 TABLES: dict[str, Sequence[Any]] = {
-    "criterion": criterion_stages(PARAMS.stages),
-    "function": stages_by_values(PARAMS.stages),
-    "sizes": stages_of(PARAMS.size_vectors),
+    "criterion": CRITERION_STAGES,
+    "function": VALUE_STAGES,
+    "sizes": SIZE_STAGES,
 }
 
 
@@ -30,8 +29,9 @@ def main() -> None:
     print("| stage | what it does | applies when | share of what is left | nodes at most |")
     print("| --- | --- | --- | --- | --- |")
     for stage in TABLES[sys.argv[1]]:
-        share = "" if stage.share is None else f"{stage.share:g}"
-        nodes = "" if stage.max_nodes is None else f"{stage.max_nodes:,}"
+        part = stage.share(AttackParams())
+        share = "" if part.part is None else f"{part.part:g}"
+        nodes = "" if part.max_nodes is None else f"{part.max_nodes:,}"
         print("| " + " | ".join([stage.name, _sentence(stage.run), _sentence(stage.applies), share, nodes]) + " |")
 
 

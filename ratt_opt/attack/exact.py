@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 import math
-from numbers import Real
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack import params as parameters
+from ratt_opt.attack.attack_tree import AttackTree
 from ratt_opt.attack.heuristics import bounded_rational_attack
-from ratt_opt.attack.stages.any_function import metered_problem
-from ratt_opt.attack.stages.attack_tree import AttackTree
-from ratt_opt.attack.stages.criterion_attack import CriterionAttack
-from ratt_opt.attack.stages.schedule import criterion_stages, stages_by_values
-from ratt_opt.attack.stages.team_attack import TeamAttack, last_stage
-from ratt_opt.attack.staging import recorded, run_stages
+from ratt_opt.attack.stages.attack_state import AttackState
+from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
+from ratt_opt.attack.staging import go_on, recorded, run_stages
 from ratt_opt.attack.task import (
     AttackBracket,
     AttackMemory,
+    AttackOptions,
     AttackResult,
     AttackTask,
     CutoffReached,
     PlanValues,
     StageRecord,
+    metered_problem,
     widened_result,
 )
 from ratt_opt.attack.thresholds.all_sets import can_enumerate_subsets
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
@@ -35,6 +33,7 @@ from ratt_opt.setfunctions.metered import unmetered
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ratt_opt._validation import IntArray
     from ratt_opt.attack.params import AttackParams
     from ratt_opt.problem import Problem
 
@@ -58,6 +57,7 @@ def worst_case_attack(
     known: Attack | None = None,
     memory: AttackMemory | None = None,
     params: AttackParams | None = None,
+    brief: bool = False,
 ) -> AttackResult:
     """Find the attack that hurts one plan most.
 
@@ -69,8 +69,8 @@ def worst_case_attack(
       looked at. That closes any network within seconds. For a function of your own it relies on nothing, once all
       sets are valued.
     - Larger teams rely on a non-decreasing objective. The three criteria are; functions of your own are not checked.
-    - Give a limit for more than 24 robots: on networks of 50 some attacks take hours to close. If another search asks
-      without a limit, dual prices stop after half a million nodes.
+    - Give a limit for more than 24 robots: on networks of 50 some attacks take hours to close. With
+      ``brief`` and no limit, dual prices stop after half a million nodes.
     - Without a limit ``HEURISTIC`` says that no stage is left that could close the bracket. That happens to functions
       and criteria of your own, and on complete graphs with very many vectors of group sizes.
 
@@ -89,6 +89,8 @@ def worst_case_attack(
     memory : of earlier attacks on this plan that a budget ended: both ends are taken from there, and prices, or
         partitions, are gone on with; what this one finds out is left there
     params : of the stages and their algorithms: they decide how soon the bracket closes, not whether it holds
+    brief : one attack of many: short stages if there is no limit of time, and a branch and bound is left to a later
+        call with the same memory. A budget alone changes no stage.
 
     Raises
     ------
@@ -97,81 +99,49 @@ def worst_case_attack(
 
     Source: ratt.tex, inner problem of eqn:resi_target_prob.
     """
-    memory = AttackMemory() if memory is None else memory
-    found = worst_case_attack_unrounded(
-        problem,
-        elements,
+    options = AttackOptions(
         max_nodes=max_nodes,
         time_limit=time_limit,
         max_evaluations=max_evaluations,
         budget=budget,
         aim=aim,
         known=known,
-        memory=memory,
-        params=params,
+        memory=AttackMemory() if memory is None else memory,
+        params=parameters.DEFAULT if params is None else params,
+        brief=brief,
     )
-    return widened_result(memory.searched_of(problem), problem.check_plan(elements), found)
+    found = worst_case_attack_unrounded(problem, elements, options)
+    return widened_result(options.memory.searched_of(problem), problem.check_plan(elements), found)
 
 
-def worst_case_attack_unrounded(
-    problem: Problem,
-    elements: ArrayLike,
-    *,
-    max_nodes: int | None = None,
-    time_limit: float | None = None,
-    max_evaluations: int | None = None,
-    budget: Budget | None = None,
-    aim: float = -math.inf,
-    known: Attack | None = None,
-    memory: AttackMemory | None = None,
-    params: AttackParams | None = None,
-) -> AttackResult:
+def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: AttackOptions) -> AttackResult:
     """:func:`worst_case_attack` for other searches: both ends as they were computed."""
-    own = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
-    if isinstance(aim, bool) or not isinstance(aim, Real) or math.isnan(aim):
-        raise InputError("aim", "must be a number", aim)
+    own, memory = options.own_budget(), options.memory
     values = PlanValues(problem, elements)
-    memory = AttackMemory() if memory is None else memory
     memory.check(problem, values.plan)
-    problem = memory.searched_of(problem)
-    values.objective = problem.objective
+    searched = memory.searched_of(problem)
+    is_metered = not isinstance(searched.objective, InformationObjective)
+    asked = metered_problem(searched, own) if is_metered else searched
+    values.objective = asked.objective
     records: list[StageRecord] = []
     try:
-        asked = problem
-        if not isinstance(problem.objective, InformationObjective):
-            asked = metered_problem(problem, own)
-            values.objective = asked.objective
-        if memory.bracket is None:
-            first = bounded_rational_attack(asked, values.plan)
-            is_exact = problem.evaluation_error == 0.0  # then the end was not moved
-            upper = first.upper if is_exact else asked.team_value(values.plan, first.attack)
-            memory.bracket = AttackBracket(first.attack, upper, first.lower, problem.objective.rounding)
-            values.evaluations = first.evaluations
-        memory.bracket.aim = aim
-        if known is not None:
-            memory.bracket.offer(known, asked.team_value(values.plan, problem.check_attack(known)))
-        memory.bracket.check_aim()
-        is_inner = budget is not None or max_nodes is not None
-        task = AttackTask(
-            asked, values, memory.bracket, own, memory, records, parameters.DEFAULT if params is None else params
-        )
-        stop = _search(task, is_inner=is_inner)
+        _begin(memory, searched, asked, values, options)
+        assert memory.bracket is not None
+        task = AttackTask(asked, values, memory.bracket, own, memory, records, options.params)
+        stop = _search(task, is_inner=options.brief)
     except OutOfBudget as out:
         stop = out.stop
     except CutoffReached:
         stop = Stop.GAP
     except KeyboardInterrupt:
         stop = own.interrupt()
-    if memory.bracket is not None and memory.bracket.is_closed and stop in UNDONE:
+    bracket = memory.bracket or _unattacked(searched, values.plan)
+    if memory.bracket is not None and bracket.is_closed and stop in UNDONE:
         stop = Stop.CLOSED  # by what was known before the budget ended
-    if (bracket := memory.bracket) is None:  # what no attack at all gives
-        values.objective = unmetered(problem.objective)
-        bracket = AttackBracket(Attack(), _unattacked(problem, values), values(()))
-    attack, lower, upper = bracket.attack, min(bracket.lower, bracket.upper), bracket.upper
     return AttackResult(
-        attack=attack,
-        lower=lower,
-        upper=upper,
+        attack=bracket.attack,
+        lower=min(bracket.lower, bracket.upper),
+        upper=bracket.upper,
         stop=stop,
         evaluations=values.evaluations,
         nodes=own.nodes,
@@ -179,8 +149,30 @@ def worst_case_attack_unrounded(
     )
 
 
-def _unattacked(problem: Problem, values: PlanValues) -> float:
-    return max(values(group) for group in problem.communication.groups())
+def _begin(memory: AttackMemory, searched: Problem, asked: Problem, values: PlanValues, options: AttackOptions) -> None:
+    """Give the memory a bracket by a first attack, unless it has one; offer the known attack.
+
+    Raises ``CutoffReached`` : the attack in hand is what was aimed at.
+    """
+    if memory.bracket is None:
+        first = bounded_rational_attack(asked, values.plan)
+        is_exact = searched.evaluation_error == 0.0  # then the end was not moved
+        upper = first.upper if is_exact else asked.team_value(values.plan, first.attack)
+        memory.bracket = AttackBracket(first.attack, upper, first.lower, searched.objective.rounding)
+        values.evaluations = first.evaluations
+    memory.bracket.aim = options.aim
+    if options.known is not None:
+        value = asked.team_value(values.plan, searched.check_attack(options.known))
+        memory.bracket.offer(options.known, value)
+    memory.bracket.check_aim()
+
+
+def _unattacked(problem: Problem, plan: IntArray) -> AttackBracket:
+    """Bracket that needs no attack: the team as it is, and the value of no measurement."""
+    values = PlanValues(problem, plan)
+    values.objective = unmetered(problem.objective)
+    upper = max(values(group) for group in problem.communication.groups())
+    return AttackBracket(Attack(), upper, values(()))
 
 
 def _search(task: AttackTask, *, is_inner: bool) -> Stop:
@@ -192,10 +184,7 @@ def _search(task: AttackTask, *, is_inner: bool) -> Stop:
         goes_on = task.budget.seconds_left <= task.params.stages.renewed * task.memory.seconds
     if begun is not None and goes_on:
         with recorded(task, "earlier search, resumed"):
-            return last_stage(task, begun)
+            return go_on(task, begun)
     task.memory.seconds = task.budget.seconds_left
-    if is_criterion:
-        return (
-            run_stages(criterion_stages(task.params.stages), CriterionAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
-        )
-    return run_stages(stages_by_values(task.params.stages), TeamAttack(task, is_inner=is_inner)) or Stop.HEURISTIC
+    stages = CRITERION_STAGES if is_criterion else VALUE_STAGES
+    return run_stages(stages, AttackState(task, is_inner=is_inner)) or Stop.HEURISTIC

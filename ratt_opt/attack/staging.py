@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from ratt_opt.attack.task import StageRecord
 from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
-    from ratt_opt.attack.task import AttackTask
+    from ratt_opt.attack.params import AttackParams
+    from ratt_opt.attack.task import AttackTask, Resumable
 
-__all__ = ["Stage", "recorded", "run_stages", "without_stages"]
+__all__ = ["WHOLE", "Share", "Stage", "go_on", "recorded", "run_stages", "without_stages"]
 
 
 class Staged(Protocol):
@@ -26,25 +28,40 @@ class Staged(Protocol):
 S = TypeVar("S", bound=Staged)
 
 
-def _always(search: Staged) -> bool:  # noqa: ARG001  (the shape of a condition)
-    """Always."""
-    return True
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Share:
+    """Part of the remaining budget that a stage may spend; its end is the end of the stage only.
 
-
-@dataclass(frozen=True, slots=True)
-class Stage(Generic[S]):
-    """A row of a schedule.
-
-    ``run`` : what is done; if it returns why it stopped and has no share, the schedule ends with that
-    ``applies`` : when; its docstring says it
-    ``share`` : of the seconds, evaluations and nodes left; ``None`` for all of them. ``max_nodes`` : no more than these
+    ``part`` : of the seconds, evaluations and nodes left; ``None`` for all of them. ``max_nodes`` : no more than these
     """
 
-    name: str
-    run: Callable[[S], Stop | None]
-    applies: Callable[[S], bool] = _always
-    share: float | None = None
+    part: float | None = None
     max_nodes: int | None = None
+
+
+WHOLE = Share()
+"""Whole remaining budget: the schedule ends with what such a stage returns, if it says why it stopped."""
+
+
+class Stage(ABC, Generic[S]):
+    """One row of a schedule; ``attack`` is the state of one attack, its task within the stage's share.
+
+    ``name`` : in results and in ``--explain``. The docstrings of ``run`` and ``applies`` are what the tables show.
+    """
+
+    name: ClassVar[str]
+
+    def applies(self, attack: S) -> bool:  # noqa: ARG002  (the shape of a condition)
+        """Always."""
+        return True
+
+    def share(self, params: AttackParams) -> Share:  # noqa: ARG002  (the shape of a share)
+        """Return the part of the remaining budget that the stage may spend; all of it by default."""
+        return WHOLE
+
+    @abstractmethod
+    def run(self, attack: S) -> Stop | None:
+        """Narrow the bracket; if there is no share, why the whole attack stops, or ``None`` to go on."""
 
 
 LEFT_OUT: set[str] = set()
@@ -73,10 +90,10 @@ def run_stages(stages: Sequence[Stage[S]], search: S) -> Stop | None:
     for stage in stages:
         if stage.name in LEFT_OUT or not stage.applies(search):
             continue
-        stop = None
-        with recorded(task, stage.name), _share(stage, search):
+        stop, share = None, stage.share(task.params)
+        with recorded(task, stage.name), _within(share, search):
             stop = stage.run(search)
-        if stage.share is not None:
+        if share.part is not None:
             stop = None  # that was the end of the share
         if stop is None and task.bracket.is_closed:
             stop = Stop.CLOSED
@@ -88,15 +105,14 @@ def run_stages(stages: Sequence[Stage[S]], search: S) -> Stop | None:
 
 
 @contextmanager
-def _share(stage: Stage[S], search: S) -> Iterator[None]:
-    """Give the search the stage's share of the budget; that it ends is the end of the stage only."""
-    if stage.share is None and stage.max_nodes is None:
+def _within(share: Share, search: Staged) -> Iterator[None]:
+    """Give the search a share of the budget."""
+    if share == WHOLE:
         yield
         return
-    whole = search.task
-    share = 1.0 if stage.share is None else stage.share
-    with whole.budget.stage(share, max_nodes=stage.max_nodes) as part:
-        search.task = replace(whole, budget=part)
+    whole, part = search.task, 1.0 if share.part is None else share.part
+    with whole.budget.stage(part, max_nodes=share.max_nodes) as budget:
+        search.task = replace(whole, budget=budget)
         try:
             yield
         finally:
@@ -123,3 +139,9 @@ def recorded(task: AttackTask, name: str) -> Iterator[None]:
                     upper=bracket.upper,
                 )
             )
+
+
+def go_on(task: AttackTask, search: Resumable) -> Stop:
+    """Run a search, begun or new, that the memory keeps for a later call."""
+    search.task, task.memory.search = task, search
+    return search.run()

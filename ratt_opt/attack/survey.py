@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.exact import worst_case_attack
@@ -58,9 +59,10 @@ def attack_survey(
     """
     own = Budget.inside(budget, time_limit)
     seconds = None if time_limit is None else EXACT_SHARE * time_limit
+    brief = math.isinf(own.seconds_left)  # without a limit an exact attack may take hours
     results: ByCurrentName[AttackResult] = ByCurrentName(
         {
-            "worst": worst_case_attack(problem, elements, time_limit=seconds, budget=own, params=params),
+            "worst": worst_case_attack(problem, elements, time_limit=seconds, budget=own, params=params, brief=brief),
             "bounded_rational": bounded_rational_attack(problem, elements),
             "greedy": greedy_attack(problem, elements, budget=own),
             "random": random_attack(problem, elements, seed=seed),

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from ratt_opt._rounding import down, up
 from ratt_opt._values import ReprMixin, counted, plain
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.params import AttackParams
+from ratt_opt.budget import Budget
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
+from ratt_opt.setfunctions.metered import metered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -21,18 +26,20 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.budget import Budget, Stop
+    from ratt_opt.budget import Stop
     from ratt_opt.problem import Problem
 
 __all__ = [
     "AttackBracket",
     "AttackMemory",
+    "AttackOptions",
     "AttackResult",
     "AttackTask",
     "CutoffReached",
     "PlanValues",
     "Resumable",
     "StageRecord",
+    "metered_problem",
     "widened_result",
 ]
 
@@ -68,6 +75,11 @@ class PlanValues(SetFunction):
             selected[:, self.plan] = rows
             values[start : start + len(rows)] = self.objective.evaluate(selected)
         return values
+
+
+def metered_problem(problem: Problem, budget: Budget) -> Problem:
+    """The problem whose objective counts its values in a budget and keeps within it."""
+    return replace(problem, objective=metered(problem.objective, budget))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -216,6 +228,34 @@ class AttackMemory:
             self.problem, self.plan = problem, plan
         if self.problem is not problem or not np.array_equal(self.plan, plan):
             raise InputError("memory", "must be of attacks on the same plan of the same problem", self.plan.tolist())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttackOptions:
+    """Options of one exact attack, as ``worst_case_attack`` explains them.
+
+    Raises
+    ------
+    InputError : ``aim`` is no number.
+    """
+
+    max_nodes: int | None = None
+    time_limit: float | None = None
+    max_evaluations: int | None = None
+    budget: Budget | None = None
+    aim: float = -math.inf
+    known: Attack | None = None
+    memory: AttackMemory = field(default_factory=AttackMemory)
+    params: AttackParams = field(default_factory=lambda: parameters.DEFAULT)
+    brief: bool = False
+
+    def __post_init__(self) -> None:
+        if isinstance(self.aim, bool) or not isinstance(self.aim, Real) or math.isnan(self.aim):
+            raise InputError("aim", "must be a number", self.aim)
+
+    def own_budget(self) -> Budget:
+        """The budget of this attack, inside the outer one. InputError : a limit is not a number >= 0."""
+        return Budget.inside(self.budget, self.time_limit, self.max_nodes, self.max_evaluations)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -38,7 +39,7 @@ def assess(
 ) -> PlanAssessment:
     """Attack one plan in the worst way, unless that is ``known``, and describe the team after it."""
     elements = plan.elements
-    worst = known or worst_case_attack(problem, elements, budget=budget)
+    worst = known or worst_case_attack(problem, elements, budget=budget, brief=math.isinf(budget.seconds_left))
     seeing, f = problem.best_group(elements, worst.attack), problem.objective
     posterior = None
     if isinstance(f, InformationObjective):
@@ -71,7 +72,7 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
     for spared in _spared(problem, worst.worst_case.attack):
         if budget.is_over:
             break
-        attacks.append(worst_case_attack(spared, plan.elements, budget=budget).attack)
+        attacks.append(worst_case_attack(spared, plan.elements, budget=budget, brief=True).attack)
     nexts = sorted((under(attack) for attack in attacks), key=lambda view: view.worst_case.upper)
     return {"worst": worst, **({"next worst": nexts[0]} if nexts else {}), "none": under(Attack())}
 

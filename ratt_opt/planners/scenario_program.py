@@ -106,7 +106,7 @@ class _ScenarioSearch:
         return self._result(attacks)
 
     def _attack(self, plan: IntArray) -> Attack:
-        found = worst_case_attack(self.problem, plan, budget=self.budget.part())
+        found = worst_case_attack(self.problem, plan, budget=self.budget.part(), brief=True)
         if found.lower > self.lower:
             self.best, self.lower = plan, found.lower
         return found.attack

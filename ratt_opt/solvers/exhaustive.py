@@ -8,6 +8,7 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.attack.exact import worst_case_attack_unrounded
+from ratt_opt.attack.task import AttackOptions
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
@@ -86,7 +87,8 @@ def exhaustive_optimum(
     lower = upper = float(worst[best])
     if stop is not Stop.EXHAUSTED:  # what monotonicity and the outcomes so far prove
         upper = min(upper, problem.objective(range(problem.objective.n)))
-        lower = min(worst_case_attack_unrounded(problem, elements, time_limit=0, budget=own).lower, upper)
+        known = worst_case_attack_unrounded(problem, elements, AttackOptions(time_limit=0, budget=own))
+        lower = min(known.lower, upper)
     count = sum(values.size for values in group_values.values())
     found = MaxMinResult(
         elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size

@@ -6,23 +6,25 @@ beside an inner part, the tests that compare its loops with the definition.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from copy import copy
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 import ratt_opt as ro
 from ratt_opt import AttackParams
-from ratt_opt.attack import exact, survey
+from ratt_opt.attack import attack_tree, exact, survey
 from ratt_opt.attack import params as parameters
 from ratt_opt.attack.annealing import Starts
+from ratt_opt.attack.enumeration import enumerate_by_values
+from ratt_opt.attack.exchanges import exchange_attack
 from ratt_opt.attack.protection import best_links, criticality
 from ratt_opt.attack.size_vectors import size_vector_search
+from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
-from ratt_opt.attack.stages import attack_tree, team_attack
-from ratt_opt.attack.stages.any_function import annealed_attacks, exchange_attack
-from ratt_opt.attack.stages.attack_tree import try_every_attack
+from ratt_opt.attack.stages import every_attack, greedy_steps, single_robots
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.attack.team import Links, Team
@@ -31,12 +33,13 @@ from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.listed_columns import ListedSearch
 from ratt_opt.attack.thresholds.pricing import PricingProblem
 from ratt_opt.attack.thresholds.threshold_search import ThresholdSearch
+from ratt_opt.attack.value_annealing import annealed_attacks
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.group_list import groups_of
 from ratt_opt.setfunctions.metered import Metered
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     import pytest
 
@@ -75,6 +78,13 @@ class Once:
         return self._narrow(self.task)
 
 
+class Sized(SizeVectorSearch):
+    """The search by size vectors with its schedule."""
+
+    def run(self) -> Stop:
+        return search_size_vectors(self)
+
+
 def _packed(task: AttackTask) -> Team | None:
     return Team.of(task.problem.objective, task.values.plan, task.params)
 
@@ -98,12 +108,12 @@ def _annealed_then_priced(task: AttackTask) -> Stop:
 
 SEARCHES = {
     "all sets": all_sets.AllSets,
-    "size vectors": lambda task: SizeVectorSearch(task, _packed(task)),
+    "size vectors": lambda task: Sized(task, _packed(task)),
     "dual prices": _priced,
     "listed columns": _by_list,
     "branch and bound": attack_tree.AttackTree,
     "annealed attacks and dual prices": lambda task: Once(task, _annealed_then_priced),
-    "every attack": lambda task: Once(task, try_every_attack),
+    "every attack": lambda task: Once(task, enumerate_by_values),
     "annealed values": lambda task: Once(task, annealed_attacks),
     "exchanges": lambda task: Once(task, exchange_attack),
 }
@@ -167,7 +177,9 @@ PACKED = {
 NO_TABLES = {
     (all_sets, "LARGEST_VALUED"): 0,
     (all_sets, "LARGEST_ENUMERATED"): 0,
-    (team_attack, "LARGEST_VALUED"): 0,
+    (every_attack, "LARGEST_VALUED"): 0,
+    (greedy_steps, "LARGEST_VALUED"): 0,
+    (single_robots, "LARGEST_VALUED"): 0,
 }
 """Sets of robots are too many to be looked at."""
 LARGE = NO_TABLES | {(AttackParams, "criterion.small"): 0}
@@ -218,18 +230,29 @@ def exchanges_near(monkeypatch: pytest.MonkeyPatch, instead: Callable) -> None:
 
 def watch(monkeypatch: pytest.MonkeyPatch, name: str, called: Callable) -> None:
     """Let ``called(search, run)`` run the stages of a name; ``run(search)`` is what they are otherwise."""
-    for table in ("criterion_stages", "stages_by_values"):
+    for table in ("CRITERION_STAGES", "VALUE_STAGES"):
         monkeypatch.setattr(exact, table, _watched(getattr(exact, table), name, called))
 
 
-def _watched(table: Callable, name: str, called: Callable) -> Callable:
+def _watched(table: Sequence, name: str, called: Callable) -> list:
     def one(stage):
-        return replace(stage, run=lambda search: called(search, stage.run)) if stage.name == name else stage
+        if stage.name != name:
+            return stage
+        watched = copy(stage)
+        watched.run = lambda search: called(search, stage.run)
+        return watched
 
-    return lambda share: [one(stage) for stage in table(share)]
+    return [one(stage) for stage in table]
 
 
 def annealed_value(problem: Problem, plan: object, seed: int) -> float:
     """What one annealed attack leaves, from a start that the engine does not make."""
     team = Team.of(problem.objective, np.asarray(plan))
     return Starts(team, Links.of(problem.threat), problem.threat, team.params.annealing, seed=seed).next(Budget()).value
+
+
+def add_stage(monkeypatch: pytest.MonkeyPatch, stage: object, after: str) -> None:
+    """List a stage of a criterion's schedule after the stage of a name."""
+    names = [listed.name for listed in exact.CRITERION_STAGES]
+    at = names.index(after) + 1
+    monkeypatch.setattr(exact, "CRITERION_STAGES", (*exact.CRITERION_STAGES[:at], stage, *exact.CRITERION_STAGES[at:]))

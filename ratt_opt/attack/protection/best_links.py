@@ -13,7 +13,7 @@ from ratt_opt.attack.exact import worst_case_attack_unrounded
 from ratt_opt.attack.protection.choice_search import best_choice
 from ratt_opt.attack.protection.known_attacks import KnownAttacks
 from ratt_opt.attack.protection.upgrades import Addition, Protection
-from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, PlanValues, widened_result
+from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, AttackOptions, PlanValues, widened_result
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.problem import check_problem
@@ -237,8 +237,8 @@ class _LinkSearch:
             self._last = links, self.upgrade.changed(links), AttackMemory()
         _, changed, memory = self._last
         nodes = self.max_nodes if max_nodes is None else max_nodes
-        part = self.budget.part(share)
-        result = worst_case_attack_unrounded(changed, self.values.plan, max_nodes=nodes, budget=part, memory=memory)
+        options = AttackOptions(max_nodes=nodes, budget=self.budget.part(share), memory=memory, brief=True)
+        result = worst_case_attack_unrounded(changed, self.values.plan, options)
         self.attacks, self.nodes = self.attacks + 1, self.nodes + result.nodes
         if result.stop not in {Stop.CLOSED, Stop.EXHAUSTED}:
             self.unproved_stop = result.stop

@@ -213,7 +213,7 @@ def breaking_budgets(
     def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
         stronger = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
         plan = stronger.check_plan(elements(stronger) if callable(elements) else elements)
-        return worst_case_attack(stronger, plan, max_nodes=max_nodes, budget=own.part(ATTACK_SHARE))
+        return worst_case_attack(stronger, plan, max_nodes=max_nodes, budget=own.part(ATTACK_SHARE), brief=True)
 
     for alpha_s in range(problem.n_robots + 1):
         if own.is_over:

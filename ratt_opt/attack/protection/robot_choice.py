@@ -87,7 +87,7 @@ def robots_to_protect(
             left = True
             break
         team = replace(problem, protected_robots=problem.protected_robots | chosen)
-        known[chosen] = found = worst_case_attack(team, plan, max_nodes=max_nodes, budget=own)
+        known[chosen] = found = worst_case_attack(team, plan, max_nodes=max_nodes, budget=own, brief=True)
         if len(chosen) < count:
             waiting += [chosen | {robot} for robot in sorted(found.attack.sensing, reverse=True)]
     best = max(known, key=lambda robots: (known[robots].lower, -len(robots)))

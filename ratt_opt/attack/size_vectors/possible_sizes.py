@@ -21,6 +21,7 @@ import numpy as np
 
 from ratt_opt.attack.size_vectors.disjoint_sets import MOST_ROBOTS
 from ratt_opt.attack.size_vectors.family_search import SetLists
+from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket
 from ratt_opt.graph.link_scores import link_scores, scoring_group
@@ -88,7 +89,7 @@ def _search(
 ) -> None:
     """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
     try:
-        SizeVectorSearch(replace(task, problem=relaxed, bracket=start, records=[]), team, vectors).run()
+        search_size_vectors(SizeVectorSearch(replace(task, problem=relaxed, bracket=start, records=[]), team, vectors))
     finally:
         task.bracket.raise_lower(min(start.lower, start.upper))
 

@@ -17,12 +17,10 @@ import numpy as np
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.size_vectors.decision import SizeDecision
 from ratt_opt.attack.size_vectors.weak_families import WeakFamilies, weakest_of
-from ratt_opt.attack.staging import Stage, run_stages
 from ratt_opt.attack.team import Links
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.pricing import PricingProblem
 from ratt_opt.attack.thresholds.threshold_search import Threshold, ThresholdSearch
-from ratt_opt.budget import Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.graph.survivor_sizes import (
     FIRST,
@@ -35,13 +33,13 @@ from ratt_opt.problem import Attack
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from ratt_opt.attack.params.size_vectors import SizeVectorParams
     from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.attack.team import Team
+    from ratt_opt.budget import Stop
     from ratt_opt.graph.survivor_sizes import Sizes
 
-__all__ = ["SizeVectorSearch", "stages_of"]
+__all__ = ["SizeVectorSearch"]
 
 MOST_VECTORS = FIRST - 1
 """Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
@@ -72,48 +70,21 @@ class SizeVectorSearch:
             task, plan, self._decision, (sizes.effort, sizes.last_effort), anneals=vectors is None
         )
 
-    def run(self) -> Stop:
-        """Search every vector; the bracket is valid whenever this stops."""
-        return run_stages(stages_of(self.team.params.size_vectors), self) or self.task.budget.stop() or Stop.HEURISTIC
-
-    # -- what the stages ask -------------------------------------------------------------------------------------
-
-    def blinds_everyone(self) -> bool:
-        """All robots may be blinded."""
-        return self.vectors == [()]
-
-    def has_many_vectors(self) -> bool:
-        """Size vectors too many for a list of all."""
-        return not self.has_all_vectors
-
-    def is_limited(self) -> bool:
-        """Limit of time."""
-        return bool(np.isfinite(self.task.budget.seconds_left))
-
-    def is_unlimited(self) -> bool:
-        """No limit of time."""
-        return not self.is_limited()
-
+    @property
     def is_about_families(self) -> bool:
-        """Several groups about alike, limit of time."""
+        """Several groups are about alike, and there is a limit of time."""
         return self._is_about_families and self.has_all_vectors
 
+    @property
     def has_small_groups(self) -> bool:
-        """Several groups about alike, none need have more than an eighth of the team, nobody blinded, limit of time."""
+        """No group need have more than an eighth of the team, and nobody is blinded."""
         smallest = min(sizes[0] for sizes in self.vectors)
-        return (
-            self.is_about_families()
-            and self.team.params.size_vectors.small * smallest <= self.team.robots
-            and not self.threat.n_blinded
-        )
+        return self.team.params.size_vectors.small * smallest <= self.team.robots and not self.threat.n_blinded
 
-    # -- the stages ----------------------------------------------------------------------------------------------
-
-    def blind_everyone(self) -> Stop:
+    def blind_everyone(self) -> None:
         """Blind every robot: none is left to sense."""
         self._accept((frozenset(),))
         self.bracket.lower = self.bracket.upper
-        return Stop.CLOSED
 
     def exchange(self) -> None:
         """The weakest families that exchanges find, of each vector or of some."""
@@ -165,14 +136,6 @@ class SizeVectorSearch:
         self._sizes.task = self.task
         self._sizes.anneal(self.team.params.size_vectors.starts)
 
-    def anneal_on(self) -> None:
-        """Annealed attacks as long as there is time."""
-        self._sizes.task = self.task
-        while True:
-            self._sizes.anneal(self.team.params.size_vectors.starts)
-            if not np.isfinite(self.task.budget.seconds_left):
-                return
-
     def _are_alike(self, families: list[GroupExchanges]) -> bool:
         """Test whether an attack leaves groups of about equal value while a limit of time is to be shared."""
         budget = self.task.budget
@@ -196,23 +159,3 @@ class SizeVectorSearch:
     def _accept(self, groups: Iterable[frozenset[int]]) -> bool:
         outcome = tuple(sorted(groups, key=lambda group: min(group, default=0)))
         return self.task.offer(Attack(*realise(self.threat, outcome)))
-
-
-def stages_of(params: SizeVectorParams) -> tuple[Stage[SizeVectorSearch], ...]:
-    """Stages of an attack on a complete graph, by size vectors."""
-    return (
-        Stage("nobody left", SizeVectorSearch.blind_everyone, SizeVectorSearch.blinds_everyone),
-        Stage("exchanges of families", SizeVectorSearch.exchange),
-        Stage(
-            "forced size",
-            SizeVectorSearch.weakest_of_forced_size,
-            SizeVectorSearch.has_many_vectors,
-            params.forced_share,
-        ),
-        Stage("annealed attacks", SizeVectorSearch.anneal_on, SizeVectorSearch.has_many_vectors),
-        Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_limited, params.first_share),
-        Stage("attack in hand", SizeVectorSearch.test_attack, SizeVectorSearch.is_unlimited),
-        Stage("annealed attacks", SizeVectorSearch.anneal, SizeVectorSearch.is_about_families, params.annealed_share),
-        Stage("dual prices", SizeVectorSearch.dual_prices, SizeVectorSearch.has_small_groups, params.prices_share),
-        Stage("thresholds", SizeVectorSearch.thresholds),
-    )

@@ -1,112 +1,57 @@
-"""All attacks on a plan under a criterion, valued in batches: where links and cuts are few, the quickest exact way.
-
-How many are few follows from the time that is left: what a batch and a partition take is measured first.
-"""
+"""Stages: every attack, if these are few."""
 
 from __future__ import annotations
 
-from itertools import combinations, islice
 from math import comb
-from time import perf_counter
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ratt_opt.budget import Stop
-from ratt_opt.graph.few_cuts import partitions_by_few_cuts
-from ratt_opt.problem import Attack
+from ratt_opt.attack.enumeration import enumerate_by_values
+from ratt_opt.attack.stages.attack_state import AttackState
+from ratt_opt.attack.staging import Share, Stage
+from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
+from ratt_opt.graph.few_cuts import MOST_ATTACKS, attacks_are_few
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from ratt_opt.attack.params import AttackParams
+    from ratt_opt.budget import Stop
 
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.task import AttackTask
-    from ratt_opt.graph.threat import Threat
-
-__all__ = ["EveryAttack"]
+__all__ = ["EveryAttack", "EveryValuedAttack"]
 
 
-class EveryAttack:
-    """Enumeration of every attack that uses the whole budgets; relies on a non-decreasing objective."""
+class EveryAttack(Stage[AttackState]):
+    """Stage that tries every attack on a criterion: sparse networks and few cuts close by it with no gap at all."""
 
-    def __init__(self, task: AttackTask) -> None:
-        self._task, self._threat = task, task.problem.threat
-        self._objective = task.problem.information_objective
-        information = self._objective.information[task.values.plan]
-        self._rows: FloatArray = np.ascontiguousarray(information.reshape(len(information), -1))
-        self._free = sorted(set(range(len(information))) - self._threat.protected_robots)
+    name = "every attack"
 
-    @property
-    def seconds(self) -> float:
-        """Estimated seconds of trying all: every partition, and for each the largest group under all blinded sets.
+    def applies(self, attack: AttackState) -> bool:
+        """Links not all alike; at most 20,000 attacks, or more than 24 robots and as many as soon are tried."""
+        if attack.threat.links_alike or attacks_are_few(attack.threat):
+            return not attack.threat.links_alike
+        return not (attack.has_table or attack.is_brief) and attack.enumeration.is_soon(attack.task.budget)
 
-        Most attacks leave more than the one in hand already there; the other groups are valued for the rest.
-        """
-        threat = self._threat
-        cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
-        blinded = comb(len(self._free), threat.n_blinded)
-        began = perf_counter()
-        threat.graph.groups(tuple(islice(sorted(threat.graph.links), threat.n_cut)))
-        partition = perf_counter() - began
-        rows = min(blinded, self._task.params.every_attack.batch)
-        blind, value = np.zeros((rows, len(self._rows)), dtype=np.bool_), np.inf
-        for _ in range(2):  # the first call is slower
-            began = perf_counter()
-            self._values(tuple(range(len(self._rows))), blind)
-            value = min(value, (perf_counter() - began) / rows)
-        return float(cuts * (partition + blinded * value))
+    def share(self, params: AttackParams) -> Share:
+        """Return a part that leaves time for other stages."""
+        return Share(part=params.stages.every_attack)
 
-    def is_soon(self) -> bool:
-        """Tell whether all attacks can be enumerated in a share of the remaining time."""
-        left = self._task.budget.seconds_left
-        most = self._task.params.every_attack.seconds if np.isinf(left) else self._task.params.every_attack.share * left
-        return not _are_many(self._threat, len(self._free)) and self.seconds <= most
-
-    def run(self) -> Stop:
-        """Find the worst attack of a plan.
-
-        Raises
-        ------
-        OutOfBudget : the time is up, or no node is left; the bracket keeps the worst attack tried.
-        """
-        bracket, budget = self._task.bracket, self._task.budget
-        for cut, groups in partitions_by_few_cuts(self._threat, budget):
-            ordered = [tuple(sorted(group)) for group in sorted(groups, key=len, reverse=True)]
-            for blinded in self._batches():
-                budget.check()
-                worst = self._worst(ordered, blinded, bracket.upper)
-                if worst is not None:  # valued anew: the bracket holds what an attack leaves if it is valued alone
-                    self._task.offer(Attack(frozenset(blinded[worst].tolist()), cut))
-        bracket.raise_lower(bracket.upper)
-        return Stop.CLOSED
-
-    def _batches(self) -> Iterator[IntArray]:
-        """(K, n_blinded) the sets of robots that may be blinded, some at a time."""
-        every = combinations(self._free, self._threat.n_blinded)
-        while some := list(islice(every, self._task.params.every_attack.batch)):
-            yield np.array(some, dtype=np.int64).reshape(len(some), self._threat.n_blinded)
-
-    def _worst(self, groups: list[tuple[int, ...]], blinded: IntArray, upper: float) -> int | None:
-        """The blinded set that leaves least, if that is less than the attack in hand."""
-        blind = np.zeros((len(blinded), len(self._rows)), dtype=np.bool_)
-        blind[np.arange(len(blinded))[:, None], blinded] = True
-        left, most = np.arange(len(blinded)), np.full(len(blinded), -np.inf)
-        for group in groups:
-            most[left] = np.maximum(most[left], self._values(group, blind[left]))
-            left = left[most[left] < upper]
-            if not len(left):
-                return None
-        return int(left[most[left].argmin()])
-
-    def _values(self, group: tuple[int, ...], blind: BoolArray) -> FloatArray:
-        """(K,) values of a group with some robots blinded. Sums, no differences: no digit is lost."""
-        members = list(group)
-        sums = (~blind[:, members]).astype(np.float64) @ self._rows[members]
-        prior = self._objective.prior_information
-        return self._objective.value(prior + sums.reshape(len(blind), *prior.shape))
+    def run(self, attack: AttackState) -> Stop:
+        """Every attack, valued in batches."""
+        return attack.enumeration.run(attack.task.budget)
 
 
-def _are_many(threat: Threat, n_free: int) -> bool:
-    """Tell whether there are too many attacks to enumerate on any machine."""
-    cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
-    return cuts * comb(n_free, threat.n_blinded) > 10**12
+class EveryValuedAttack(Stage[AttackState]):
+    """Stage that tries every attack on any set function."""
+
+    name = "every attack"
+
+    def applies(self, attack: AttackState) -> bool:
+        """More than 20 robots, at most 20,000 attacks; or no link attacks, fewer blinded sets than half a table."""
+        n_robots, threat = attack.n_robots, attack.threat
+        if threat.n_cut == 0:
+            free = n_robots - len(threat.protected_robots)
+            blinded = sum(comb(free, k) for k in range(threat.n_blinded + 1))
+            return bool(blinded <= min(MOST_ATTACKS, 2 ** (n_robots - 1)))
+        return n_robots > LARGEST_VALUED and not threat.links_alike and attacks_are_few(threat)
+
+    def run(self, attack: AttackState) -> Stop:
+        """Every attack, valued one by one."""
+        return enumerate_by_values(attack.task)

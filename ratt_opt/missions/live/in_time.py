@@ -105,7 +105,11 @@ class TimedPlanner:
         """RATT's plan, or the rest of the last plan if more of that is proved to be left by the worst attack."""
         problem = asked.problem
         plans = [ratt(problem).elements, asked.start]
-        return max(plans, key=lambda plan: worst_case_attack(problem, plan, max_nodes=self.fallback_nodes).lower)
+
+        def worth(plan: IntArray) -> float:
+            return worst_case_attack(problem, plan, max_nodes=self.fallback_nodes, brief=True).lower
+
+        return max(plans, key=worth)
 
     def _whole(self, asked: PlanRequest) -> IntArray:
         plan, problem = self.planner, asked.problem

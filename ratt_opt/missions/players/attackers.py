@@ -31,7 +31,7 @@ A limit of seconds would make missions depend on the machine."""
 
 def _worst(problem: Problem, plan: IntArray) -> AttackResult:
     at_once = problem.threat.links_alike or problem.n_robots <= LARGEST_VALUED
-    return worst_case_attack(problem, plan, max_nodes=None if at_once else NODES)
+    return worst_case_attack(problem, plan, max_nodes=None if at_once else NODES, brief=not at_once)
 
 
 ATTACKERS: dict[str, Attacker] = {

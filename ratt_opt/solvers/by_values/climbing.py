@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.stages.any_function import metered_problem
+from ratt_opt.attack.task import metered_problem
 from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:

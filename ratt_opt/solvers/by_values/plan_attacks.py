@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.exact import worst_case_attack_unrounded
-from ratt_opt.attack.stages.any_function import metered_problem
-from ratt_opt.attack.task import AttackMemory
+from ratt_opt.attack.task import AttackMemory, AttackOptions, metered_problem
 from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:
@@ -66,7 +65,9 @@ class PlanAttacks:
         memory = self._begun.pop(key, None) or AttackMemory()
         if self.worst_case is not None:
             aim = max(aim, self.lower)  # a plan that keeps no more is of no use
-        result = worst_case_attack_unrounded(self.problem, elements, budget=part, aim=aim, memory=memory)
+        result = worst_case_attack_unrounded(
+            self.problem, elements, AttackOptions(budget=part, aim=aim, memory=memory, brief=True)
+        )
         self._cut_short.discard(key)
         if result.stop in {Stop.TIME, Stop.EVALUATIONS}:
             self._cut_short.add(key)

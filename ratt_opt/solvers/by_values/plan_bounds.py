@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.exact import worst_case_attack_unrounded
-from ratt_opt.attack.stages.any_function import metered_problem
+from ratt_opt.attack.task import AttackOptions, metered_problem
 from ratt_opt.bounds.guarantees import pattern_free_bound
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE
@@ -33,7 +33,9 @@ def pooling_bound(problem: Problem, attacks: PlanAttacks, budget: Budget) -> flo
     """Bound by the worst attack found on robots that hold all their elements."""
     everyone = np.arange(problem.n_robots)
     team = replace(problem, objective=Pooled(problem, _singles(attacks.problem)), robot=everyone)
-    worst = worst_case_attack_unrounded(team, everyone, budget=budget.part(ATTACK_SHARE)).attack
+    worst = worst_case_attack_unrounded(
+        team, everyone, AttackOptions(budget=budget.part(ATTACK_SHARE), brief=True)
+    ).attack
     team = metered_problem(team, budget)
     return min(team.team_value(everyone, attack) for attack in [*attacks.known, worst])
 

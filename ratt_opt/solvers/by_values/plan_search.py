@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import readonly
-from ratt_opt.attack.stages.any_function import metered_problem
-from ratt_opt.attack.task import CLOSED_WIDTH
+from ratt_opt.attack.task import CLOSED_WIDTH, metered_problem
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.setfunctions.base import checked_values
 from ratt_opt.setfunctions.metered import unmetered

@@ -13,7 +13,7 @@ from ratt_opt.attack.exact import worst_case_attack_unrounded
 from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack
 from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
-from ratt_opt.attack.task import AttackBracket, AttackMemory
+from ratt_opt.attack.task import AttackBracket, AttackMemory, AttackOptions
 from ratt_opt.attack.team import Team, has_native_kernel
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.outcomes import realise
@@ -220,9 +220,8 @@ class Adversary:
     def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> AttackResult:
         """Exact worst case of a plan within a part of the budget, or an attack that leaves it no more than ``aim``."""
         nodes, known, memory = budget.max_nodes, self._worst_known(self.problem, plan), self._memory(plan)
-        result = worst_case_attack_unrounded(
-            self.problem, plan, max_nodes=nodes, budget=budget, aim=aim, known=known, memory=memory
-        )
+        options = AttackOptions(max_nodes=nodes, budget=budget, aim=aim, known=known, memory=memory, brief=True)
+        result = worst_case_attack_unrounded(self.problem, plan, options)
         self._remember(self.problem, plan, result.attack)
         return result
 
@@ -237,7 +236,9 @@ class Adversary:
             worst = int(values.argmin())
             value = max(objective(plan[list(self.pool.groups[group])]) for group in self.pool.of_outcome[worst])
             memory.bracket = AttackBracket(self.pool.attack(worst), value, objective(()), objective.rounding)
-        return worst_case_attack_unrounded(self.problem, plan, time_limit=0, budget=budget, memory=memory)
+        return worst_case_attack_unrounded(
+            self.problem, plan, AttackOptions(time_limit=0, budget=budget, memory=memory, brief=True)
+        )
 
     def _memory(self, plan: IntArray) -> AttackMemory:
         """Return the memory of earlier exact attacks on the plan, if it is one of the last few attacked."""
@@ -267,6 +268,7 @@ class Adversary:
             return bounded_rational_attack(problem, plan).attack
         if not problem.threat.links_alike:
             return greedy_attack(problem, plan, budget=self.budget).attack
-        found = worst_case_attack_unrounded(problem, plan, max_nodes=0, budget=self.budget.part(QUICK_SHARE))
+        options = AttackOptions(max_nodes=0, budget=self.budget.part(QUICK_SHARE), brief=True)
+        found = worst_case_attack_unrounded(problem, plan, options)
         self.raise_if_interrupted(found)
         return found.attack

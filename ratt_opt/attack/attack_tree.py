@@ -9,21 +9,17 @@ node of the least bound is divided first: its bound is one on all attacks.
 from __future__ import annotations
 
 from heapq import heappop, heappush
-from itertools import chain, combinations, islice
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ratt_opt.budget import Stop
-from ratt_opt.graph.few_cuts import partitions_by_few_cuts
-from ratt_opt.problem import Attack
-from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.attack.task import AttackTask
 
-__all__ = ["AttackTree", "try_every_attack"]
+__all__ = ["AttackTree"]
 
 
 class _AttackNode(NamedTuple):
@@ -160,33 +156,3 @@ def _order(single: FloatArray, links: frozenset[tuple[int, int]]) -> list[int]:
         order.append(max(rest, key=lambda i: (placed[i], single[i], -i)))
         placed += near[order[-1]]
     return order
-
-
-def try_every_attack(task: AttackTask) -> Stop:
-    """Find the worst attack of a plan by trying all.
-
-    If links can be cut it relies on a non-decreasing objective: then some worst attack uses its whole budgets.
-    Otherwise all smaller sets of robots are blinded too. A robot blinded in one group leaves the others as they are, so
-    each set of robots is valued once; many are valued in one batch.
-
-    Raises
-    ------
-    OutOfBudget : the time is up, or no node is left; the bracket keeps the worst attack tried.
-    """
-    threat, worth = task.problem.threat, dict[frozenset[int], float]()
-    f, plan = unmetered(task.problem.objective), task.values.plan
-    free = sorted(set(range(task.problem.n_robots)) - threat.protected_robots)
-    sizes = [threat.n_blinded] if threat.n_cut else range(threat.n_blinded, -1, -1)
-    for cut, groups in partitions_by_few_cuts(threat, task.budget):
-        blinded = chain.from_iterable(combinations(free, size) for size in sizes)
-        while some := list(map(frozenset, islice(blinded, task.params.branching.at_once))):
-            task.budget.check()
-            left = [[group - blind for group in groups] for blind in some]
-            new = list({group: None for parts in left for group in parts if group not in worth})
-            worth.update(zip(new, task.values.values_of(new).tolist(), strict=True))
-            for blind, parts in zip(some, left, strict=True):
-                if max(worth[group] for group in parts) < task.bracket.upper:
-                    task.budget.evaluate(len(parts))  # valued alone: batches may round otherwise
-                    task.bracket.offer(Attack(blind, cut), max(f(plan[sorted(group)]) for group in parts))
-    task.bracket.raise_lower(task.bracket.upper)
-    return Stop.CLOSED

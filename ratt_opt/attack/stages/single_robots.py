@@ -1,0 +1,67 @@
+"""Lower bound of attacks on a plan whose objective is any set function, known by its values alone.
+
+Some group keeps ``k`` unblinded robots (``forced_survivors``), so by monotonicity it is worth at least the k-th
+smallest individual value, and at least the strongest robot that cannot be blinded. Where theory proves the function
+submodular, every robot adds at least what it adds on top of all others of the plan; where the function states a bound
+``c`` on its total curvature, at least ``1 - c`` of its individual value. The ``k`` least of these add up to a bound.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ratt_opt.attack.bounds import first_bound, forced_survivors, strongest_left
+from ratt_opt.attack.stages.attack_state import AttackState
+from ratt_opt.attack.staging import Stage
+from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
+from ratt_opt.setfunctions.metered import unmetered
+
+if TYPE_CHECKING:
+    from ratt_opt.attack.task import AttackTask
+
+__all__ = ["SingleRobots", "SingleValues"]
+
+
+class SingleRobots(Stage[AttackState]):
+    """Stage that bounds a criterion by its single robots."""
+
+    name = "single robots"
+
+    def run(self, attack: AttackState) -> None:
+        """Raise the lower bound by single robots and the forced size."""
+        attack.task.bracket.raise_lower(first_bound(attack.objective, attack.task.values.plan, attack.threat))
+
+
+class SingleValues(Stage[AttackState]):
+    """Stage that bounds any set function by its single robots."""
+
+    name = "single robots"
+
+    def applies(self, attack: AttackState) -> bool:
+        """More than 20 robots, or a limit."""
+        return attack.n_robots > LARGEST_VALUED or attack.is_limited
+
+    def run(self, attack: AttackState) -> None:
+        """Raise the lower bound by single robots and their marginals."""
+        bound_by_values(attack.task)
+
+
+def bound_by_values(task: AttackTask) -> None:
+    """Raise the lower end by what singles and marginals prove; relies on a non-decreasing objective."""
+    values, threat = task.values, task.problem.threat
+    size, f = forced_survivors(threat), unmetered(task.problem.objective)
+    nothing = values(())
+    task.bracket.raise_lower(nothing)
+    if size == 0:
+        return
+    single = values.singletons()
+    task.bracket.raise_lower(max(strongest_left(single, threat), float(np.sort(single)[size - 1])))
+    kept = 1.0 - f.most_total_curvature
+    if kept > 0:
+        task.bracket.raise_lower(nothing + kept * float(np.sort(single - nothing)[:size].sum()))
+    if f.is_submodular:
+        everyone = range(values.n)
+        top = values(everyone) - values.evaluate(~np.eye(values.n, dtype=np.bool_))
+        task.bracket.raise_lower(nothing + float(np.sort(np.maximum(top, 0.0))[:size].sum()))
