@@ -48,6 +48,7 @@ from .attack.heuristics import bounded_rational_attack as bounded_rational_attac
 from .attack.heuristics import greedy_attack as greedy_attack
 from .attack.heuristics import random_attack as random_attack
 from .attack.params import AttackParams as AttackParams
+from .curvatures.params import CurvatureParams as CurvatureParams
 from .attack.task import AttackResult as AttackResult
 from .attack.protection.criticality import (
     criticality_ranking as criticality_ranking,

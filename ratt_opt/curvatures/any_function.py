@@ -21,19 +21,18 @@ if TYPE_CHECKING:
 
 __all__ = ["any_marginals"]
 
-CONTEXTS = 30
-"""Random sets of the domain from which every element's context is taken, if time does not end it before."""
 
-
-def any_marginals(domain: Domain, budget: Budget, stop: Stop) -> MeasuredMarginals:
+def any_marginals(domain: Domain, budget: Budget, stop: Stop, contexts: int) -> MeasuredMarginals:
     """Brackets of the marginals; relies on a non-decreasing function. ``stop`` : if the budget ends nothing.
+
+    ``contexts`` : random sets of the domain from which every element's context is taken, if time allows
 
     InputError : a context shows that the function falls.
     """
     known = _Seen(domain, budget)
     try:
         known.bound()
-        known.draw()
+        known.draw(contexts)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -70,10 +69,10 @@ class _Seen:
             self.rests_on = "the function's own word on its total curvature"
             self.least, self.most = kept * single, np.minimum(self.most, single / kept)
 
-    def draw(self) -> None:
+    def draw(self, contexts: int) -> None:
         """Marginals beside random sets of the domain, the first as large as it allows."""
         rng, groups = np.random.default_rng(0), self.domain.groups
-        for k in range(CONTEXTS):
+        for k in range(contexts):
             density = 1.0 if k == 0 else rng.random()
             chosen = {i: int(rng.choice(own)) for i, own in enumerate(groups) if rng.random() <= density}
             for i, own in enumerate(groups):

@@ -15,7 +15,7 @@ import numpy as np
 from ratt_opt._validation import check_number
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.curvatures.any_function import any_marginals
-from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of
+from ratt_opt.curvatures.domains import Domain, domain_of
 from ratt_opt.curvatures.marginals import (
     MarginalBrackets,
     Marginals,
@@ -23,6 +23,7 @@ from ratt_opt.curvatures.marginals import (
     check_monotone,
     enumerate_marginals,
 )
+from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.curvatures.planar.marginal_brackets import PlanarBrackets
 from ratt_opt.curvatures.rounded_quotients import complement_above, complement_below, quotient_above, quotient_below
 from ratt_opt.curvatures.separable.marginal_brackets import SeparableBrackets
@@ -45,10 +46,6 @@ GAP = 0.02
 """Default gap: a guarantee that is linear in ``1 - curvature`` then loses at most 2 % to the bracket."""
 SECONDS = 30.0
 """Default seconds: what 30 robots with 12 controls take at a gap of 0.15, up to one instance in twenty (measured)."""
-ENUMERATION_SHARE = 0.5
-"""Share of the seconds left in which an enumeration has to end; a bracket gets the rest."""
-LARGEST_CHECKED = 16
-"""Largest ground set whose submodularity is checked before the closed form is used (milliseconds)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,6 +87,7 @@ def total_curvature(
     max_nodes: int | None = None,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: CurvatureParams = DEFAULT,
 ) -> Curvature:
     """Total curvature ``c = 1 - min_x (smallest marginal of x) / (largest marginal of x)``.
 
@@ -106,6 +104,7 @@ def total_curvature(
     time_limit : seconds for the search; ``None`` for no limit. max_nodes : parts it may bound
     max_evaluations : values of a function that is no information criterion; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
+    params : of the algorithms: they decide how soon the bracket closes, not whether it holds
 
     Raises
     ------
@@ -114,7 +113,9 @@ def total_curvature(
     Source: ratt.tex, eq:total_curvature (Sviridenko, Vondrak, Ward 2017, Section 8).
     """
     inner = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
-    return curvature_over(domain_of(f, owners, plan), total=True, gap=check_number("gap", gap, low=0), budget=inner)
+    return curvature_over(
+        domain_of(f, owners, plan), total=True, gap=check_number("gap", gap, low=0), budget=inner, params=params
+    )
 
 
 @interruptible
@@ -128,6 +129,7 @@ def curvature(
     max_nodes: int | None = None,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: CurvatureParams = DEFAULT,
 ) -> Curvature:
     """Curvature ``k = 1 - min_x (smallest marginal of x) / f(x)`` of a submodular function.
 
@@ -138,7 +140,7 @@ def curvature(
     ----------
     f : normalised, non-decreasing and submodular. Over ``"elements"`` and ``"robots"`` that is checked if the table
         fits, known if theory proves it (log-det), and otherwise relied on, not checked (``how`` says which)
-    owners, plan, gap, time_limit, max_nodes, max_evaluations, budget : see :func:`total_curvature`
+    owners, plan, gap, time_limit, max_nodes, max_evaluations, budget, params : see :func:`total_curvature`
 
     Raises
     ------
@@ -147,20 +149,24 @@ def curvature(
     Source: ratt.tex, eq:curvature (Conforti and Cornuejols 1984).
     """
     inner = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
-    return curvature_over(domain_of(f, owners, plan), total=False, gap=check_number("gap", gap, low=0), budget=inner)
+    return curvature_over(
+        domain_of(f, owners, plan), total=False, gap=check_number("gap", gap, low=0), budget=inner, params=params
+    )
 
 
 @Step("curvature")
-def curvature_over(domain: Domain, *, total: bool, gap: float, budget: Budget) -> Curvature:
+def curvature_over(
+    domain: Domain, *, total: bool, gap: float, budget: Budget, params: CurvatureParams = DEFAULT
+) -> Curvature:
     """The total curvature, or the curvature, over a domain."""
     if total:
-        return _curvature_from(_measured(domain, gap, budget, against_own=False), domain)
+        return _curvature_from(_measured(domain, gap, budget, params, against_own=False), domain)
     if domain.name == "feasible":
-        found = _measured(domain, gap, budget, against_own=True)
+        found = _measured(domain, gap, budget, params, against_own=True)
         if not domain.is_submodular:
             found = replace(found, how=f"{found.how} (submodularity relied on, not checked)")
     else:
-        found = _on_top(domain, budget)
+        found = _on_top(domain, budget, params)
     marginals = found.marginals
     if (single := _singles(domain, budget)) is not None:
         marginals = replace(marginals, largest_lower=single, largest_upper=single)
@@ -177,44 +183,48 @@ def _singles(domain: Domain, budget: Budget) -> FloatArray | None:
         return None
 
 
-def _on_top(domain: Domain, budget: Budget) -> MeasuredMarginals:
+def _on_top(domain: Domain, budget: Budget, params: CurvatureParams) -> MeasuredMarginals:
     """Smallest marginals of a submodular function over sets of any elements: on top of all others."""
     try:
-        top, how = _top_of_lattice(domain.restricted, budget), _submodularity(domain, budget)
+        top, how = _top_of_lattice(domain.restricted, budget), _submodularity(domain, budget, params)
     except OutOfBudget as out:
-        return any_marginals(domain, budget, out.stop)
+        return any_marginals(domain, budget, out.stop, params.contexts)
     check_monotone(domain, top)
     return MeasuredMarginals(marginals=top, how=how, stop=Stop.EXHAUSTED, nodes=0)
 
 
-def _measured(domain: Domain, gap: float, budget: Budget, *, against_own: bool) -> MeasuredMarginals:
+def _measured(
+    domain: Domain, gap: float, budget: Budget, params: CurvatureParams, *, against_own: bool
+) -> MeasuredMarginals:
     """``against_own`` : the ratio that matters is to ``f({x})`` (curvature), not to the largest marginal."""
     f = domain.restricted
-    if domain.count <= LARGEST_ENUMERATION:
+    if domain.count <= params.largest_enumeration:
         try:
-            marginals = enumerate_marginals(domain, budget.part(ENUMERATION_SHARE))
+            marginals = enumerate_marginals(domain, budget.part(params.enumeration_share))
             return MeasuredMarginals(marginals=marginals, how="every context enumerated", stop=Stop.EXHAUSTED, nodes=0)
         except OutOfBudget:
             pass  # a bracket in the time left
         except KeyboardInterrupt:
             budget.interrupt()
     if not isinstance(f, InformationObjective):
-        return any_marginals(domain, budget, Stop.HEURISTIC)
+        return any_marginals(domain, budget, Stop.HEURISTIC, params.contexts)
     kind: type[MarginalBrackets] = SeparableBrackets if f.planar_levels() is None else PlanarBrackets
-    brackets = kind(f, domain.owners, gap=gap, budget=budget, against_own=against_own)
+    brackets = kind(f, domain.owners, gap=gap, budget=budget, against_own=against_own, params=params)
     stop, how = brackets.run(), f"{brackets.rests_on} and attained contexts"
     return MeasuredMarginals(marginals=brackets.marginals(), how=how, stop=stop, nodes=budget.nodes)
 
 
-def _submodularity(domain: Domain, budget: Budget) -> str:
+def _submodularity(domain: Domain, budget: Budget, params: CurvatureParams) -> str:
     """Say on what the closed form rests; refuse a function that is shown not to be submodular."""
     how = "ends of the lattice"
     if domain.is_submodular:
         return f"{how} (submodular by theory)"
     unchecked = f"{how} (submodularity relied on, not checked)"
-    if domain.restricted.n > LARGEST_CHECKED:
+    if domain.restricted.n > params.largest_checked:
         return unchecked
-    found = find_submodularity_violation(domain.restricted, time_limit=None, budget=budget.part(ENUMERATION_SHARE))
+    found = find_submodularity_violation(
+        domain.restricted, time_limit=None, budget=budget.part(params.enumeration_share)
+    )
     if isinstance(found, NotFound):
         return unchecked
     if isinstance(found, Violation):

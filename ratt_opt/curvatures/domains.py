@@ -18,10 +18,8 @@ from ratt_opt.setfunctions.metered import Metered
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["LARGEST_ENUMERATION", "Domain", "domain_of", "over_subsets", "values_over"]
+__all__ = ["Domain", "domain_of", "over_subsets", "values_over"]
 
-LARGEST_ENUMERATION = 2**24
-"""Most sets of a domain that are enumerated (128 MiB of values)."""
 BLOCK = 2**14
 """Sets whose values are computed at once: their matrices stay in cache, larger blocks are no faster (measured)."""
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, overload
 import numpy as np
 
 from ratt_opt.budget import Stop
+from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.lattice import marginal_ends
@@ -165,11 +166,18 @@ class MarginalBrackets(ABC):
     rests_on: str
 
     def __init__(
-        self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
+        self,
+        f: InformationObjective,
+        owners: IntArray,
+        *,
+        gap: float,
+        budget: Budget,
+        against_own: bool,
+        params: CurvatureParams = DEFAULT,
     ) -> None:
         single = f.singletons()  # every marginal without context
         self._f, self._owners, self._single = f, owners, single
-        self._gap, self._budget, self._against_own = gap, budget, against_own
+        self._gap, self._budget, self._against_own, self._params = gap, budget, against_own, params
         self.least = np.zeros(len(single))
         self.most = single.copy() if against_own else np.full(len(single), np.inf)
         self.seen_least, self.seen_most = single.copy(), single.copy()

@@ -23,9 +23,10 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.curvatures.curvature import ENUMERATION_SHARE, GAP, SECONDS, curvature_over
-from ratt_opt.curvatures.domains import LARGEST_ENUMERATION, Domain, domain_of, over_subsets, values_over
+from ratt_opt.curvatures.curvature import GAP, SECONDS, curvature_over
+from ratt_opt.curvatures.domains import Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
+from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.curvatures.rounded_quotients import complement_above, complement_below, quotient_above, quotient_below
 from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
@@ -44,15 +45,9 @@ if TYPE_CHECKING:
 
 __all__ = ["GeneralisedCurvature", "SubmodularityRatio", "generalised_curvature", "submodularity_ratio"]
 
-LARGEST_PAIRS = 1.5e8
-"""Most pairs of nested sets that are all looked at (a few seconds)."""
-SAMPLES = 200
-"""Random sets whose subsets are all looked at, if the domain is too large."""
 RATIO_ROUNDING = 128 * UNIT
 """Relative error of a quotient of a sum of up to 24 differences, and a difference, of exact numbers: a term is rounded
 at most 25 times, and moved by the noise in each; the quotient a few times more. That is less than half of this."""
-SAMPLED_SIZE = 8
-"""Elements of each: 3**8 nested pairs take 0.1 ms compiled, so that all samples take a fraction of a second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,6 +88,7 @@ def submodularity_ratio(
     time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: CurvatureParams = DEFAULT,
 ) -> SubmodularityRatio:
     """Bracket the submodularity ratio ``gamma`` of a non-decreasing function.
 
@@ -110,21 +106,21 @@ def submodularity_ratio(
     domain, inner = domain_of(f, owners, plan), Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
     seed = check_integer("seed", seed, low=0)
     try:
-        if domain.count > LARGEST_ENUMERATION:
-            return _ratio_from_curvature(domain, seed, inner)
-        part = inner.part(ENUMERATION_SHARE)
+        if domain.count > params.largest_enumeration:
+            return _ratio_from_curvature(domain, seed, inner, params)
+        part = inner.part(params.enumeration_share)
         values, groups = _monotone_values(domain, part), domain.groups
-        if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= LARGEST_PAIRS:
+        if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= params.largest_pairs:
             found = _smallest_ratio(values, groups, domain.noise, part)
             part.check()
             return _ratio(found.lower, found, domain, "every nested pair of sets", Stop.EXHAUSTED)
         later = _later_marginals(values, groups, domain.noise, inner)
     except OutOfBudget:
-        return _ratio_from_curvature(domain, seed, inner)
+        return _ratio_from_curvature(domain, seed, inner, params)
     except KeyboardInterrupt:
         inner.interrupt()
-        return _ratio_from_curvature(domain, seed, inner)
-    found = _sampled_ratio(domain, seed, inner)
+        return _ratio_from_curvature(domain, seed, inner, params)
+    found = _sampled_ratio(domain, seed, inner, params)
     return _ratio(later, found, domain, "later marginals; a searched pair", inner.stop() or Stop.HEURISTIC)
 
 
@@ -139,6 +135,7 @@ def generalised_curvature(
     time_limit: float | None = SECONDS,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: CurvatureParams = DEFAULT,
 ) -> GeneralisedCurvature:
     """Bracket the generalised curvature ``alpha`` of a non-decreasing function.
 
@@ -153,9 +150,9 @@ def generalised_curvature(
     domain, inner = domain_of(f, owners, plan), Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
     seed = check_integer("seed", seed, low=0)
     exact = None
-    if domain.count <= LARGEST_ENUMERATION:
+    if domain.count <= params.largest_enumeration:
         try:
-            part = inner.part(ENUMERATION_SHARE)
+            part = inner.part(params.enumeration_share)
             exact = _smallest_kept(_monotone_values(domain, part), domain.groups, domain.noise, part)
         except OutOfBudget:
             pass  # a bracket in the time left
@@ -166,8 +163,8 @@ def generalised_curvature(
         how, stop = "every nested pair of sets", Stop.EXHAUSTED
     else:
         # Total curvature compares a marginal with any other of its element, not only with earlier ones.
-        found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner)
-        kept, upper = _searched_kept(domain, found, seed, inner), found.upper
+        found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner, params=params)
+        kept, upper = _searched_kept(domain, found, seed, inner, params), found.upper
         how, stop = f"at most the curvature ({found.how}); a searched pair", found.stop
     small, large = map(domain.named, (kept.small, kept.large))
     x, lower = None if kept.element is None else domain.element(kept.element), complement_below(kept.most)
@@ -183,12 +180,12 @@ def generalised_curvature(
     )
 
 
-def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget) -> SubmodularityRatio:
+def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget, params: CurvatureParams) -> SubmodularityRatio:
     """``rho(w | S)`` is at least ``1 - c`` times the largest marginal of ``w``; those add up to ``rho(W | S)``."""
     if domain.is_submodular:
         return _ratio(1.0, _Pair(), domain, "submodular by theory", Stop.EXHAUSTED)
-    curved = curvature_over(domain, total=True, gap=GAP, budget=budget)
-    found = _sampled_ratio(domain, seed, budget)
+    curved = curvature_over(domain, total=True, gap=GAP, budget=budget, params=params)
+    found = _sampled_ratio(domain, seed, budget, params)
     lower = complement_below(curved.upper)
     return _ratio(lower, found, domain, "1 - total curvature; a searched pair", curved.stop)
 
@@ -287,12 +284,14 @@ def _attaining_subset(gain: FloatArray, index: tuple[np.intp, ...], value: float
     return tuple(int(pick) if chosen else 0 for pick, chosen in zip(index, where, strict=True))
 
 
-def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatArray, list[IntArray]]]:
+def _samples(
+    domain: Domain, seed: int, budget: Budget, params: CurvatureParams
+) -> Iterator[tuple[FloatArray, list[IntArray]]]:
     """Tables of all subsets of random sets of the domain, while there is time."""
     rng = np.random.default_rng(seed)
     groups = domain.groups
-    size = min(SAMPLED_SIZE, len(groups))
-    for _ in range(SAMPLES):
+    size = min(params.sampled_size, len(groups))
+    for _ in range(params.samples):
         if budget.is_over:
             return
         taken = np.sort(rng.choice(len(groups), size, replace=False))
@@ -304,16 +303,16 @@ def _samples(domain: Domain, seed: int, budget: Budget) -> Iterator[tuple[FloatA
         yield values, chosen
 
 
-def _sampled_ratio(domain: Domain, seed: int, budget: Budget) -> _Pair:
-    samples = _samples(domain, seed, budget)
+def _sampled_ratio(domain: Domain, seed: int, budget: Budget, params: CurvatureParams) -> _Pair:
+    samples = _samples(domain, seed, budget, params)
     tried = (_smallest_ratio(values, groups, domain.noise, Budget()) for values, groups in samples)
     return min(tried, key=lambda pair: pair.upper, default=_Pair())
 
 
-def _searched_kept(domain: Domain, found: Curvature, seed: int, budget: Budget) -> _Kept:
+def _searched_kept(domain: Domain, found: Curvature, seed: int, budget: Budget, params: CurvatureParams) -> _Kept:
     """The best of the sampled pairs and, if nested, of the contexts that attain the curvature (restricted names)."""
     tried = [_Kept()]
-    samples = _samples(domain, seed, budget)
+    samples = _samples(domain, seed, budget, params)
     tried += [_smallest_kept(values, groups, domain.noise, Budget()) for values, groups in samples]
     if found.element is not None and set(found.largest_context) <= set(found.smallest_context):
         back = {domain.element(x): x for x in range(domain.restricted.n)}

@@ -2,23 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from ratt_opt import CurvatureParams
 
-from ratt_opt.curvatures import curvature, ratios
+__all__ = ["FEW_PAIRS", "SEARCHED"]
 
-if TYPE_CHECKING:
-    from tests.ways import Way
-
-__all__ = ["FEW_PAIRS", "RATIOS_SEARCHED", "SEARCHED", "enumerated"]
-
-
-def enumerated(largest: int) -> Way:
-    """Up to so many contexts are enumerated."""
-    return {(curvature, "LARGEST_ENUMERATION"): largest}
-
-
-SEARCHED = enumerated(1)
-"""Curvatures are searched, however small the function is."""
-RATIOS_SEARCHED = {(ratios, "LARGEST_ENUMERATION"): 1}
-FEW_PAIRS = {(ratios, "LARGEST_PAIRS"): 1}
-"""Ratios are searched, and by sets instead of pairs of sets."""
+SEARCHED = CurvatureParams(largest_enumeration=1)
+"""Curvatures and ratios are searched, however small the function is."""
+FEW_PAIRS = CurvatureParams(largest_pairs=1)
+"""Ratios are searched by sets instead of pairs of sets."""

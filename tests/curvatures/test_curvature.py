@@ -10,12 +10,12 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
+from ratt_opt.curvatures.params import SeparableParams
 from ratt_opt.curvatures.separable.marginal_brackets import other_elements
-from tests.curvatures.engine import RATIOS_SEARCHED, SEARCHED, enumerated
+from tests.curvatures.engine import SEARCHED
 from tests.interrupts import interrupted_at
 from tests.setfunctions import oracle
 from tests.strategies import OBJECTIVES, information_data, monotone_table, random_objective, range_bearing
-from tests.ways import go
 
 KINDS = sorted(OBJECTIVES)
 
@@ -133,22 +133,21 @@ def test_an_element_within_rounding_decides_only_the_upper_end():
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(15))
-def test_brackets_hold_the_exact_value(kind, seed, monkeypatch):
+def test_brackets_hold_the_exact_value(kind, seed):
     rng = np.random.default_rng([seed, 37])
     n, dimension = int(rng.integers(4, 9)), int(rng.integers(1, 4))
     prior, information = information_data(rng, n, int(rng.integers(1, 4)), dimension)
     f = OBJECTIVES[kind](prior, information, rng.uniform(0.5, 2, len(prior)))
     owners = rng.integers(0, 3, n) if rng.random() < 0.7 else None
     exact = ro.total_curvature(f, owners)
-    go(monkeypatch, SEARCHED)
     for gap, nodes in ((0.0, 0), (0.1, 40), (0.0, 3000)):
-        found = ro.total_curvature(f, owners, gap=gap, max_nodes=nodes)
+        found = ro.total_curvature(f, owners, gap=gap, max_nodes=nodes, params=SEARCHED)
         assert found.lower - 1e-9 <= exact.upper
         assert exact.lower <= found.upper + 1e-9
         if found.element is not None:
             assert ratio_shown(f, found) == pytest.approx(found.lower, abs=1e-8)
     if kind == "logdet":
-        k = ro.curvature(f, owners, gap=0.0, max_nodes=3000)
+        k = ro.curvature(f, owners, gap=0.0, max_nodes=3000, params=SEARCHED)
         assert k.lower == pytest.approx(exact.upper, abs=1e-7)
         assert k.upper == pytest.approx(exact.upper, abs=1e-7)
 
@@ -202,81 +201,78 @@ def section_six(kind="trace", n=6):
     return problem.objective, problem.robot
 
 
-def test_an_enumerable_section_six_domain_agrees_with_the_bracket(monkeypatch):
+def test_an_enumerable_section_six_domain_agrees_with_the_bracket():
     for kind in KINDS:
         f, owners = section_six(kind, 4)
         exact = ro.total_curvature(f, owners)
         assert exact.lower <= exact.upper < 1
         assert exact.upper - exact.lower < 1e-8  # what rounding may do to the quotient
-        go(monkeypatch, SEARCHED)
-        found = ro.total_curvature(f, owners, gap=0.01, max_nodes=500)
-        monkeypatch.undo()
+        found = ro.total_curvature(f, owners, gap=0.01, max_nodes=500, params=SEARCHED)
         assert found.lower - 1e-9 <= exact.upper <= found.upper + 1e-9
         if kind != "maxeig":
             assert (1 - found.lower) / (1 - found.upper) <= 1.01 + 1e-6
 
 
-def test_budgets_stop_the_search_and_keep_the_bracket(monkeypatch):
+def test_budgets_stop_the_search_and_keep_the_bracket():
     f, owners = section_six()
-    go(monkeypatch, SEARCHED)
-    free = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400)
-    hurried = ro.total_curvature(f, owners, gap=1e-6, time_limit=0.0)
-    counted = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=f.n)
+    free = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400, params=SEARCHED)
+    hurried = ro.total_curvature(f, owners, gap=1e-6, time_limit=0.0, params=SEARCHED)
+    counted = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=f.n, params=SEARCHED)
     assert hurried.stop is ro.Stop.TIME
     assert counted.stop is ro.Stop.NODES
     for found in (hurried, counted):
         assert found.lower <= free.upper + 1e-12
         assert free.lower <= found.upper + 1e-12
-    again = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400)
+    again = ro.total_curvature(f, owners, gap=1e-6, time_limit=None, max_nodes=400, params=SEARCHED)
     assert again == free
 
 
 def test_an_outer_budget_gives_its_seconds_and_hears_of_interrupts(monkeypatch):
     f, owners = section_six()
-    go(monkeypatch, SEARCHED, RATIOS_SEARCHED)
     for measure in (ro.total_curvature, ro.curvature, ro.submodularity_ratio, ro.generalised_curvature):
-        assert measure(f, owners, budget=Budget(0.0)).stop is ro.Stop.TIME
+        assert measure(f, owners, budget=Budget(0.0), params=SEARCHED).stop is ro.Stop.TIME
     outer = Budget()
-    free = ro.total_curvature(f, owners, time_limit=None, max_nodes=30, budget=outer)
-    assert free == ro.total_curvature(f, owners, time_limit=None, max_nodes=30)
+    free = ro.total_curvature(f, owners, time_limit=None, max_nodes=30, budget=outer, params=SEARCHED)
+    assert free == ro.total_curvature(f, owners, time_limit=None, max_nodes=30, params=SEARCHED)
     assert (free.stop, outer.nodes, outer.stop()) == (ro.Stop.NODES, 0, None)
 
     def interrupted(*_):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted)
-    assert ro.total_curvature(f, owners, budget=outer).stop is ro.Stop.INTERRUPTED
+    assert ro.total_curvature(f, owners, budget=outer, params=SEARCHED).stop is ro.Stop.INTERRUPTED
     assert outer.stop() is ro.Stop.INTERRUPTED
 
 
-def test_results_are_values(monkeypatch):
+def test_results_are_values():
     f, owners = section_six("maxeig", 3)
     for limit in (2**24, 1):
-        go(monkeypatch, enumerated(limit))
-        found, again = (ro.total_curvature(f, owners, time_limit=None, max_nodes=50) for _ in range(2))
+        params = ro.CurvatureParams(largest_enumeration=limit)
+        found, again = (ro.total_curvature(f, owners, time_limit=None, max_nodes=50, params=params) for _ in range(2))
         copied = pickle.loads(pickle.dumps(found))
         assert found == again == copied
         assert found.marginals == again.marginals == copied.marginals
-        assert found.marginals != ro.curvature(f, owners, time_limit=None, max_nodes=50).marginals
+        assert found.marginals != ro.curvature(f, owners, time_limit=None, max_nodes=50, params=params).marginals
         assert {type(found.lower), type(found.upper)} == {float}
         assert {type(e) for e in (found.element, *found.smallest_context, *found.largest_context)} <= {int}
         assert len(repr(found)) < 250
-        for ratio in (ro.submodularity_ratio(f, owners), ro.generalised_curvature(f, owners)):
+        for ratio in (
+            ro.submodularity_ratio(f, owners, params=params),
+            ro.generalised_curvature(f, owners, params=params),
+        ):
             assert {type(ratio.lower), type(ratio.upper)} == {float}
             assert pickle.loads(pickle.dumps(ratio)) == ratio
-    monkeypatch.undo()
     table = ro.total_curvature(ro.TableFunction(monotone_table(np.random.default_rng(1), 4)))
     assert pickle.loads(pickle.dumps(table)).marginals == table.marginals
 
 
 def test_an_interrupt_returns_the_bracket(monkeypatch):
     f, owners = section_six()
-    go(monkeypatch, SEARCHED)
-    exact = ro.total_curvature(f, owners, gap=1e-3, time_limit=None)
+    exact = ro.total_curvature(f, owners, gap=1e-3, time_limit=None, params=SEARCHED)
     plain = ro.TraceObjective.marginal_minorant
     for call in (6, 301, 801):
         monkeypatch.setattr(ro.TraceObjective, "marginal_minorant", interrupted_at(call, plain))
-        found = ro.total_curvature(f, owners, gap=1e-9, time_limit=None)
+        found = ro.total_curvature(f, owners, gap=1e-9, time_limit=None, params=SEARCHED)
         assert found.stop is ro.Stop.INTERRUPTED
         assert found.lower <= exact.upper
         assert exact.lower <= found.upper
@@ -353,12 +349,11 @@ def test_the_max_eigenvalue_bracket_says_something_on_section_six(seed):
     assert ratio_shown(problem.objective, found) == pytest.approx(found.lower, abs=1e-9)
 
 
-def test_a_max_eigenvalue_marginal_that_is_truly_zero_has_a_witness(monkeypatch):
+def test_a_max_eigenvalue_marginal_that_is_truly_zero_has_a_witness():
     """Element 0 only sees across; once element 1 has seen along, the other axis is the worst, and 2 alone helps it."""
     prior = np.eye(2)[None] * 4.0
     information = np.array([np.diag([1.0, 0.0]), np.diag([0.0, 1.0]), np.diag([2.0, 0.5])])[:, None]
-    go(monkeypatch, SEARCHED)
-    found = ro.total_curvature(ro.MaxEigenvalueObjective(prior, information), [0, 1, 2])
+    found = ro.total_curvature(ro.MaxEigenvalueObjective(prior, information), [0, 1, 2], params=SEARCHED)
     assert found.upper == 1
     assert 1 - 1e-11 < found.lower < 1  # a marginal that is computed as 0 is 0 up to rounding
     assert ratio_shown(ro.MaxEigenvalueObjective(prior, information), found) == 1
@@ -380,20 +375,19 @@ def test_a_curvature_over_feasible_sets_says_what_it_relies_on():
 
 
 @pytest.mark.parametrize("kind", ["trace", "logdet"])
-def test_large_ground_sets_know_one_context_of_every_element_at_once(kind, monkeypatch):
+def test_large_ground_sets_know_one_context_of_every_element_at_once(kind):
     """Where a single search would take too long, elements are judged on top of the strongest others."""
-    from ratt_opt.curvatures.separable import marginal_brackets
 
-    monkeypatch.setattr(marginal_brackets, "AT_ONCE", 0)
+    slow = ro.CurvatureParams(separable=SeparableParams(at_once=0))
     problem = ro.random_scenario(12, 4, alpha_s=0, alpha_c=0, seed=5).problem(kind)
     f = problem.objective
-    found = ro.total_curvature(f, problem.robot, time_limit=0)
+    found = ro.total_curvature(f, problem.robot, time_limit=0, params=slow)
     assert found.nodes == 0
     assert found.lower > 0
     context = found.smallest_context
     assert len(set(problem.robot[[found.element, *context]])) == 12
     gain = f([*context, found.element]) - f(context)
     assert 1 - gain / f([found.element]) == pytest.approx(found.lower, rel=1e-6)
-    searched = ro.total_curvature(f, problem.robot, time_limit=2)
+    searched = ro.total_curvature(f, problem.robot, time_limit=2, params=slow)
     assert found.lower <= searched.upper
     assert searched.lower <= found.upper

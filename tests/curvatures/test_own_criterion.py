@@ -14,7 +14,6 @@ from ratt_opt.setfunctions.information import InformationObjective
 from tests.curvatures.engine import SEARCHED
 from tests.setfunctions import oracle
 from tests.strategies import information_data
-from tests.ways import go
 
 OWNERS = np.array([0, 0, 1, 1, 2, 3])
 
@@ -66,7 +65,7 @@ def test_curvatures_that_can_be_listed_are_their_definitions(criterion):
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)
-def test_beyond_that_the_bracket_holds_and_says_what_it_rests_on(criterion, monkeypatch):
+def test_beyond_that_the_bracket_holds_and_says_what_it_rests_on(criterion):
     rng = np.random.default_rng(62)
     informative = 0
     for _ in range(25):
@@ -78,10 +77,8 @@ def test_beyond_that_the_bracket_holds_and_says_what_it_rests_on(criterion, monk
             assert floor[x] <= min(found) + 1e-12 * f.prior_magnitude
             assert max(found) <= ceiling[x] * (1 + 1e-9)
         exact = oracle.total_curvature(values, OWNERS)
-        with monkeypatch.context() as patch:
-            go(patch, SEARCHED)
-            found = ro.total_curvature(f, OWNERS, gap=0.0, time_limit=None)
-            bent = ro.curvature(f, OWNERS, gap=0.0, time_limit=None) if f.is_submodular else found
+        found = ro.total_curvature(f, OWNERS, gap=0.0, time_limit=None, params=SEARCHED)
+        bent = ro.curvature(f, OWNERS, gap=0.0, time_limit=None, params=SEARCHED) if f.is_submodular else found
         for bracket in (found, bent):
             assert bracket.lower - 1e-8 <= exact <= bracket.upper + 1e-8
             assert bracket.stop in {ro.Stop.EXHAUSTED, ro.Stop.GAP, ro.Stop.CLOSED}

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from tests.curvatures.engine import FEW_PAIRS, RATIOS_SEARCHED, SEARCHED
+from tests.curvatures.engine import FEW_PAIRS, SEARCHED
 from tests.setfunctions import oracle
 from tests.strategies import monotone_table, random_objective
-from tests.ways import go
 
 
 def random_owners(rng, n):
@@ -68,19 +67,17 @@ def test_both_agree_with_their_definitions():
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_brackets_hold_the_exact_value_where_the_domain_is_taken_for_too_large(seed, monkeypatch):
+def test_brackets_hold_the_exact_value_where_the_domain_is_taken_for_too_large(seed):
     rng = np.random.default_rng([seed, 22])
     f = random_objective(rng, 6, ("trace", "logdet", "maxeig")[seed % 3])
     owners = np.array([0, 0, 1, 1, 2, 3])
     values = f.table()
     exact = oracle.submodularity_ratio(values, owners), oracle.generalised_curvature(values, owners)
-    go(monkeypatch, FEW_PAIRS)
-    ratio = ro.submodularity_ratio(f, owners)
+    ratio = ro.submodularity_ratio(f, owners, params=FEW_PAIRS)
     check_ratio(f, ratio, exact[0])
     assert ratio.how.startswith("later marginals")
-    go(monkeypatch, SEARCHED, RATIOS_SEARCHED)
-    check_ratio(f, ro.submodularity_ratio(f, owners), exact[0])
-    check_curvature(f, ro.generalised_curvature(f, owners), exact[1])
+    check_ratio(f, ro.submodularity_ratio(f, owners, params=SEARCHED), exact[0])
+    check_curvature(f, ro.generalised_curvature(f, owners, params=SEARCHED), exact[1])
 
 
 @pytest.mark.parametrize("family", ["modular", "coverage", "matroid rank", "facility location", "concave of modular"])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.curvatures.params import DEFAULT
 from ratt_opt.curvatures.planar.contexts import PlanarDescent, along, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
 from ratt_opt.curvatures.planar.regions import Region
@@ -19,24 +20,11 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
+    from ratt_opt.curvatures.params import PlanarParams
     from ratt_opt.curvatures.planar.level_program import RelaxedContext
     from ratt_opt.curvatures.planar.regions import MarginalSide
 
 __all__ = ["PlanarSearch"]
-
-# Measured on four instances of 10 robots and 15 targets, bracketed within 1.1 and 1.2.
-SLOPES = 4
-"""Most slopes tried for one region: with 2, a fifth more regions and time; 8 change nothing."""
-SLOPE_SHARE = 0.1
-"""Smallest share of the gap that another slope must be able to close; 0.03 to 0.3 do as well within 5 %."""
-NARROWEST = 1e-3
-"""Sectors narrower than this are not halved again."""
-LARGEST_LEAF = 2048
-"""Regions with at most this many contexts are enumerated, which takes no longer than a linear program; with 10 robots
-256 and 8192 change nothing, small teams end sooner."""
-HALVING_SHARE = 0.4
-"""A sector is halved if that could close this share of what its mixture leaves open; 0.2 and 0.8 need up to 3 % more
-regions."""
 
 
 class PlanarSearch:
@@ -45,14 +33,16 @@ class PlanarSearch:
     ``known`` : what the program found in searches for the same end of other elements; ``found`` : in this one.
     """
 
-    def __init__(self, side: MarginalSide, known: Sequence[RelaxedContext] = ()) -> None:
-        self.side = side
+    def __init__(
+        self, side: MarginalSide, known: Sequence[RelaxedContext] = (), params: PlanarParams = DEFAULT.planar
+    ) -> None:
+        self.side, self._params = side, params
         self.attained = PlanarDescent(side.options, side.prior, side.added, sign=side.sign, rounding=side.rounding)
         self.attained.offer(self.attained.picks)
         self.nodes = 0
         self.found: list[RelaxedContext] = []
         self._last: FloatArray | None = None
-        self._open = side.roots()
+        self._open = side.roots(params.sectors)
         side.recycle(self._open, known)
         self._keep(self._open)
 
@@ -72,7 +62,7 @@ class PlanarSearch:
             return
         region = min(self._open, key=lambda open_: open_.key)
         counts = np.bincount(self.side.options.owners, region.allowed)
-        if np.prod(counts) <= LARGEST_LEAF:
+        if np.prod(counts) <= self._params.largest_leaf:
             self.nodes += 1
             self.attained.enumerate(region.allowed)
             self._keep([other for other in self._open if other is not region])
@@ -100,10 +90,16 @@ class PlanarSearch:
         side = self.side
         start = self._last if region.start is None else region.start
         program = LevelProgram(
-            side.options, side.base, side.own_base, side.sector(region), allowed=region.allowed, start=start
+            side.options,
+            side.base,
+            side.own_base,
+            side.sector(region),
+            allowed=region.allowed,
+            start=start,
+            params=self._params,
         )
         low, high = 0.0, np.inf
-        for _ in range(SLOPES):
+        for _ in range(self._params.slopes):
             found = program.bound(region.slope, budget, side.enough(region, aim, region.slope))
             key = side.key(region, found.ceiling, region.slope)
             if region.relaxed is None or key >= region.key:
@@ -114,7 +110,7 @@ class PlanarSearch:
             if gap <= 0 or not 0 < found.level < np.inf or found.own <= 0 or budget.is_over:
                 break
             # The second is the key that the best slope could reach, at most.
-            if 1 / found.level - 1 / found.own - key <= SLOPE_SHARE * gap:
+            if 1 / found.level - 1 / found.own - key <= self._params.slope_share * gap:
                 break
             slope, wanted = region.slope, (found.level / found.own) ** 2
             low, high = (max(low, slope), high) if wanted > slope else (low, min(high, slope))
@@ -141,9 +137,9 @@ class PlanarSearch:
         ceiling = found.level - found.slope * float(total[0] - np.hypot(total[1], total[2]))
         # Bound for a sector reduced to the mixture's own direction.
         exact = side.key(region, ceiling, found.slope, added)
-        owed = exact - region.key > HALVING_SHARE * (side.sign * self.attained.value - exact)
+        owed = exact - region.key > self._params.halving_share * (side.sign * self.attained.value - exact)
         spread = self._spread(region.allowed, found)
-        if region.high - region.low <= NARROWEST or not (owed or spread.max() <= 0):
+        if region.high - region.low <= self._params.narrowest or not (owed or spread.max() <= 0):
             divided = self._divided(region.allowed, found, region.target, int(spread.argmax()))
             return [self._child(region, found, allowed, region.low, region.high) for allowed in divided]
         middle = (region.low + region.high) / 2

@@ -22,31 +22,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.curvatures.params import DEFAULT
 from ratt_opt.curvatures.planar.contexts import along, levels
 from ratt_opt.highs import LinearProgram, Rows
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
+    from ratt_opt.curvatures.params import PlanarParams
     from ratt_opt.curvatures.planar.contexts import Options
 
 __all__ = ["MARGIN", "Cuts", "LevelProgram", "RelaxedContext", "Sector", "own_direction"]
 
-ROUNDS = 12
-"""Most times the violated cuts are added for one slope."""
-NEW_CUTS = 6
-"""Worst targets that get a cut a round."""
-VIOLATION = 3e-2
-"""Cuts violated by less than this, relative to ``|t - own|``, are left."""
-FIRST_CUTS = 10
-"""Targets that get a cut if there is none to start from."""
-SMALLEST_SHARE = 1e-9
-"""Targets with a smaller share of the average to start from get no cut at once."""
 MARGIN = 1e-12
 """Safety margin for rounding of a ceiling, relative to the sum of the absolute terms."""
 EDGES = 2
-EDGE_COST = 100.0
-"""Cap on the multipliers of a sector's edges."""
+"""Edges of a sector."""
 DUAL, PRIMAL = 1, 4
 """Simplex strategies of HiGHS: after new rows, and after a new objective."""
 
@@ -86,7 +77,7 @@ class RelaxedContext:
 
 
 class MixtureProgram:
-    """``max t - slope own - EDGE_COST (violation of the edges)`` over mixtures in HiGHS; its word is not trusted.
+    """``max t - slope own - edge_cost (violation of the edges)`` over mixtures in HiGHS; its word is not trusted.
 
     It grows by cuts and is solved for one slope after another, each time from the last basis.
 
@@ -94,8 +85,10 @@ class MixtureProgram:
     ``edges`` : (2, n) scores and (2,) constants of the sector's edges.
     """
 
-    def __init__(self, owners: IntArray, own: FloatArray, edges: tuple[FloatArray, FloatArray]) -> None:
-        self._own, self._cuts, self._solved = own, 0, False
+    def __init__(
+        self, owners: IntArray, own: FloatArray, edges: tuple[FloatArray, FloatArray], edge_cost: float
+    ) -> None:
+        self._own, self._cuts, self._solved, self._edge_cost = own, 0, False, edge_cost
         self._n, self._owners = free, count = len(owners), int(owners[-1]) + 1 if len(owners) else 0
         matrix = np.zeros((count + EDGES, free + 1 + EDGES))
         matrix[owners, np.arange(free)] = 1.0
@@ -105,7 +98,7 @@ class MixtureProgram:
         lower, upper = (np.concatenate([np.ones(count), edge]) for edge in (-edges[1], np.full(EDGES, inf)))
         starts = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=len(matrix)))])
         self._program = LinearProgram(
-            np.concatenate([np.zeros(free), [-1.0], np.full(EDGES, EDGE_COST)]),
+            np.concatenate([np.zeros(free), [-1.0], np.full(EDGES, edge_cost)]),
             np.concatenate([np.zeros(free), [-inf], np.zeros(EDGES)]),
             np.concatenate([np.ones(free), np.full(1 + EDGES, inf)]),
             rows=Rows(lower, upper, starts, columns, matrix[rows, columns]),
@@ -139,7 +132,7 @@ class MixtureProgram:
         duals = np.nan_to_num(claim.duals, posinf=0.0, neginf=0.0)
         cuts = np.clip(-duals[self._owners + EDGES :], 0.0, None)
         if cuts.sum() > 0:
-            weights[:EDGES] = np.clip(duals[self._owners : self._owners + EDGES], 0.0, EDGE_COST)
+            weights[:EDGES] = np.clip(duals[self._owners : self._owners + EDGES], 0.0, self._edge_cost)
             weights[EDGES:] = cuts / cuts.sum()
         return np.clip(claim.x[: self._n], 0.0, 1.0), float(claim.x[self._n]), weights
 
@@ -160,29 +153,31 @@ class LevelProgram:
         *,
         allowed: BoolArray,
         start: FloatArray | None = None,
+        params: PlanarParams = DEFAULT.planar,
     ) -> None:
-        self._base, self._allowed = base, allowed
+        self._base, self._allowed, self._params = base, allowed, params
         self._parts, self._owners = np.ascontiguousarray(options.parts[allowed]), options.owners[allowed]
         self._first = np.flatnonzero(np.diff(self._owners, prepend=-1))
         if start is None:
             shares = 1 / np.bincount(self._owners)[self._owners]
-            start = _worst(base + np.tensordot(shares, self._parts, axes=1))
+            start = _worst(base + np.tensordot(shares, self._parts, axes=1), params.first_cuts)
         self._scores, self._constants = _sector_forms(self._parts, own_base, sector)
-        self._program = MixtureProgram(self._owners, self._scores[0], (self._scores[1:], self._constants[1:]))
+        edges = self._scores[1:], self._constants[1:]
+        self._program = MixtureProgram(self._owners, self._scores[0], edges, params.edge_cost)
         self._cuts = Cuts(np.empty(0, dtype=np.int64), np.empty(0))
-        targets = np.flatnonzero(start[0] > SMALLEST_SHARE)
+        targets = np.flatnonzero(start[0] > params.smallest_share)
         self._add(targets, np.arctan2(start[2, targets], start[1, targets]))
 
     def bound(self, slope: float, budget: Budget, enough: float = -np.inf) -> RelaxedContext:
         """The bound with one slope; ``enough`` : a ceiling low enough to stop at. It holds at every stop."""
         self._program.change_slope(slope)
-        for last in [False] * (ROUNDS - 1) + [True]:
+        for last in [False] * (self._params.rounds - 1) + [True]:
             z, level, weights = self._program.solve()
             highest = self._ceiling(np.append(-slope, weights))
             own = float(self._constants[0] + self._scores[0] @ z)
             if last or highest <= enough or not np.isfinite(level) or budget.is_over:
                 break
-            found = self._violated(z, level - VIOLATION * abs(level - own))
+            found = self._violated(z, level - self._params.violation * abs(level - own))
             if len(found[0]) == 0:
                 break
             self._add(*found)
@@ -205,7 +200,7 @@ class LevelProgram:
         """Targets of the mixture ``z`` (n,) whose level is below a limit, weakest first, and their weakest angles."""
         total = self._base + (z @ self._parts.reshape(len(z), self._base.size)).reshape(self._base.shape)
         level = levels(total)
-        targets = np.argsort(level, kind="stable")[:NEW_CUTS]
+        targets = np.argsort(level, kind="stable")[: self._params.new_cuts]
         targets = targets[level[targets] < limit]
         return targets, np.arctan2(-total[2, targets], -total[1, targets])
 
@@ -243,8 +238,8 @@ def _average(cuts: Cuts, weights: FloatArray, base: FloatArray) -> FloatArray:
     return average
 
 
-def _worst(total: FloatArray) -> FloatArray:
+def _worst(total: FloatArray, count: int) -> FloatArray:
     """(3, M) average of the weakest directions of the targets with the smallest levels."""
-    targets = np.argsort(levels(total), kind="stable")[:FIRST_CUTS]
+    targets = np.argsort(levels(total), kind="stable")[:count]
     cuts = Cuts(targets, np.arctan2(-total[2, targets], -total[1, targets]))
     return _average(cuts, np.full(len(targets), 1 / len(targets)), total)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.marginals import MarginalBrackets
+from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
@@ -26,19 +27,8 @@ if TYPE_CHECKING:
 
 __all__ = ["PlanarBrackets"]
 
-POOL = 16
-"""Averages of cuts kept for elements not searched yet, a side, each a pass over all options: 4, 16, 64 need 748, 732,
-708 regions in the same time (four instances of 10 robots)."""
-STUCK = 8
-"""Parts bounded on one side before pairs of owners are tried for a better context: they take long.
-4 and 16 change the regions bounded by 2 %."""
-CONTENDER, LONG_STUCK = 1.1, 40
-"""Ratio up to which an element is a contender, as a multiple of the smallest ratio seen; parts before pairs are tried
-for other elements (20 to 80 are alike with 10 robots)."""
 MOST_SPARE = 1e100
 """Finite, so that no product with an end that is 0 or infinite is undefined."""
-PATIENCE = 20
-"""Parts bounded on one side before its number of parts counts against it."""
 
 
 class PlanarBrackets(MarginalBrackets):
@@ -47,9 +37,16 @@ class PlanarBrackets(MarginalBrackets):
     rests_on = "smallest levels"
 
     def __init__(
-        self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
+        self,
+        f: InformationObjective,
+        owners: IntArray,
+        *,
+        gap: float,
+        budget: Budget,
+        against_own: bool,
+        params: CurvatureParams = DEFAULT,
     ) -> None:
-        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own)
+        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own, params=params)
         levels_of = f.planar_levels()
         assert levels_of is not None
         self._data = levels_of
@@ -104,19 +101,22 @@ class PlanarBrackets(MarginalBrackets):
             MarginalSide(options, prior, added, largest=largest, highest=highest, rounding=rounding)
             for largest in (False, True)
         )
-        self._searches[x] = PlanarSearch(low, self._pools[0]), PlanarSearch(high, self._pools[1])
+        low_pool, high_pool = self._pools
+        planar = self._params.planar
+        self._searches[x] = PlanarSearch(low, low_pool, planar), PlanarSearch(high, high_pool, planar)
 
     def _continue(self, x: int, target: float) -> None:
         """Refine the more doubtful of an element's two searches."""
-        low, high = self._searches[x]
+        (low, high), params = self._searches[x], self._params.planar
         doubt_low = low.attained.value / low.bound if low.bound > 0 else np.inf
         doubt_high = high.bound / high.attained.value if high.attained.value > 0 else np.inf
-        first = low.exhausted or (_pressing(doubt_high, high.nodes) > _pressing(doubt_low, low.nodes))
+        of_low, of_high = (_pressing(d, s.nodes, params.patience) for d, s in ((doubt_low, low), (doubt_high, high)))
+        first = low.exhausted or of_high > of_low
         side = high if first and not high.exhausted and not self._against_own else low
         aim = side.attained.value * self._spare(x, target) ** (-side.side.sign / (1 if self._against_own else 2))
         ratios = self._shown()
-        close = ratios[x] <= CONTENDER * ratios.min()
-        if side.nodes >= (STUCK if close else LONG_STUCK):
+        close = ratios[x] <= params.contender * ratios.min()
+        if side.nodes >= (params.stuck if close else params.long_stuck):
             side.attained.pairs(self._budget)
         before = side.nodes
         side.refine(side.side.sign * aim, self._budget)
@@ -124,7 +124,7 @@ class PlanarBrackets(MarginalBrackets):
         pool = self._pools[int(side is high)]
         pool += side.found
         side.found.clear()
-        del pool[:-POOL]
+        del pool[: -params.pool]
 
     def _spare(self, x: int, target: float) -> float:
         """Return the factor (at least 1) by which an element's proved ratio may fall short of the one seen."""
@@ -145,10 +145,12 @@ class PlanarBrackets(MarginalBrackets):
         if self._budget.is_interrupted:
             return np.inf
         everything = np.ones(len(options.elements), dtype=np.bool_)
-        program = LevelProgram(options, self._data.prior, self._data.prior, None, allowed=everything)
+        program = LevelProgram(
+            options, self._data.prior, self._data.prior, None, allowed=everything, params=self._params.planar
+        )
         return program.bound(0.0, self._budget).ceiling
 
 
-def _pressing(doubt: float, nodes: int) -> float:
+def _pressing(doubt: float, nodes: int, patience: int) -> float:
     """Return the urgency of refining a side of an element: its doubt, discounted by the nodes spent."""
-    return float(np.log(doubt) / np.sqrt(nodes + PATIENCE))
+    return float(np.log(doubt) / np.sqrt(nodes + patience))

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["MarginalSide", "Region"]
 
-EDGES = (0.1, 0.3, 0.6, 1.1, 1.6, 2.3, np.pi)
-"""Sectors first looked at, in double angle from the direction in which ``x`` adds the least (most)."""
 MARGIN = 1e-9
 """Relative safety margin for rounding on every bound."""
 
@@ -109,10 +107,10 @@ class MarginalSide:
             return most_enough(-target * (1 - 2 * MARGIN), region.added, slope, float(self._lowest[region.target]))
         return least_enough(target * (1 + 2 * MARGIN), region.added, slope, self.highest)
 
-    def roots(self) -> list[Region]:
+    def roots(self, sectors: tuple[float, ...]) -> list[Region]:
         """Regions that cover every context, bounded by ``d`` alone."""
-        ends = [(-EDGES[0], EDGES[0])]
-        for low, high in pairwise(EDGES):
+        ends = [(-sectors[0], sectors[0])]
+        for low, high in pairwise(sectors):
             ends += [(low, high), (-high, -low)]
         return [self._alone(j, low, high) for j in range(len(self._lowest)) for low, high in ends]
 

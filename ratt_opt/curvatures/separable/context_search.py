@@ -16,18 +16,12 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
+    from ratt_opt.curvatures.params import SeparableParams
     from ratt_opt.setfunctions.criterion_parts import OtherElements
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["BestContext", "ContextSearch", "FloorSearch"]
 
-FIRST_STEPS = 12
-"""Tangents tried at the root, which every element pays. 6, 12 and 24 leave 1.0137, 1.0124 and 1.0120 of
-``(1 - lower) / (1 - upper)`` in 1.9, 2.1 and 3.8 s (four trace instances of 10 robots, gap 0.02)."""
-MORE_STEPS = 36
-"""Tangents tried when the root is looked at again, before it is branched; 18 and 72 leave 1.0126 and 1.0123."""
-CHILD_STEPS = 8
-"""Tangents tried for a part: fewer are faster and weaker; 4 need 3 % more parts than 8 and 16, in the same time."""
 MARGIN = 1e-9
 """Relative safety margin for rounding on every bound: inverses of condition 1e6 lose less."""
 
@@ -93,16 +87,23 @@ class ContextSearch:
     """
 
     def __init__(
-        self, f: InformationObjective, x: int, others: OtherElements, attained: BestContext, budget: Budget
+        self,
+        f: InformationObjective,
+        x: int,
+        others: OtherElements,
+        attained: BestContext,
+        *,
+        budget: Budget,
+        params: SeparableParams,
     ) -> None:
-        self.attained, self.nodes = attained, 0
+        self.attained, self.nodes, self._params = attained, 0, params
         self._f, self._added, self._others, self._budget = f, f.information[x], others, budget
         self._serial = 0
         self._open: list[_ContextNode] = []
         count = len(others.first)
         share = 1.0 / np.bincount(others.owners, minlength=count)[others.owners]
         root = _ContextNode(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(count, dtype=np.bool_), share, 0)
-        if count and self._bound(root, FIRST_STEPS):
+        if count and self._bound(root, params.first_steps):
             self._open = [root]
         self.attained.descend(budget)
 
@@ -119,10 +120,10 @@ class ContextSearch:
     def refine(self) -> None:
         """Look at the weakest open part again, or split it; an interrupt leaves the parts as they were."""
         node = self._open[0]
-        if node.serial == 0 and node.steps < MORE_STEPS:
-            kept = [node] if self._bound(node, MORE_STEPS) else []
+        if node.serial == 0 and node.steps < self._params.more_steps:
+            kept = [node] if self._bound(node, self._params.more_steps) else []
         else:
-            kept = [child for child in self._children(node) if self._bound(child, CHILD_STEPS)]
+            kept = [child for child in self._children(node) if self._bound(child, self._params.child_steps)]
         parts = [part for part in self._open if part is not node] + kept
         heapq.heapify(parts)
         self._open = parts

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.marginals import MarginalBrackets
+from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.curvatures.separable.context_search import BestContext, ContextSearch, FloorSearch
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, eigenvalues
 from ratt_opt.setfunctions.criterion_parts import OtherElements
@@ -27,17 +28,22 @@ WORST_CONDITION = 1e6
 """Information matrices beyond this condition count as singular: their inverse is not trusted to nine digits."""
 LARGER = 1e-6
 """A bound on a largest marginal that exceeds the value alone by less, relatively, is that value and its margin."""
-AT_ONCE = 1_000_000
-"""Matrices of all elements up to which one search fits into what is known at once: it takes half a second there."""
 
 
 class SeparableBrackets(MarginalBrackets):
     """One search an element, over contexts of at most one element of each other owner."""
 
     def __init__(
-        self, f: InformationObjective, owners: IntArray, *, gap: float, budget: Budget, against_own: bool
+        self,
+        f: InformationObjective,
+        owners: IntArray,
+        *,
+        gap: float,
+        budget: Budget,
+        against_own: bool,
+        params: CurvatureParams = DEFAULT,
     ) -> None:
-        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own)
+        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own, params=params)
         self._choices: dict[int, OtherElements] = {}
         self._searches: list[ContextSearch | FloorSearch] = []
         self._largest: dict[int, BestContext] = {}
@@ -64,7 +70,9 @@ class SeparableBrackets(MarginalBrackets):
                 return self._budget.stop()
             others, attained = self._beside(x), BestContext(self._f, x, self._beside(x))
             if self._branches:
-                search: ContextSearch | FloorSearch = ContextSearch(self._f, x, others, attained, self._budget)
+                search: ContextSearch | FloorSearch = ContextSearch(
+                    self._f, x, others, attained, budget=self._budget, params=self._params.separable
+                )
             else:
                 search = FloorSearch(attained, others, self._single, float(self.least[x]), self._budget)
             self._searches.append(search)
@@ -88,7 +96,7 @@ class SeparableBrackets(MarginalBrackets):
 
     def _is_over(self, searched: Sized) -> bool:
         """Test whether to stop before the next element; one that is quick to evaluate is searched in any case."""
-        is_quick = self._f.n * self._f.n_targets <= AT_ONCE
+        is_quick = self._f.n * self._f.n_targets <= self._params.separable.at_once
         return self._budget.stop() is not None and (len(searched) > 0 or not is_quick)
 
     def _beside(self, x: int) -> OtherElements:

@@ -11,8 +11,8 @@ from scipy.optimize import linprog
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
+from ratt_opt.curvatures.params import PlanarParams
 from ratt_opt.curvatures.planar import ceilings as ceilings_module
-from ratt_opt.curvatures.planar import context_search
 from ratt_opt.curvatures.planar.ceilings import ceilings
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, PlanarDescent, along, levels, marginals
@@ -27,7 +27,6 @@ from ratt_opt.curvatures.planar.regions import MarginalSide
 from tests.curvatures.engine import SEARCHED
 from tests.interrupts import interrupted_at
 from tests.strategies import information_data, range_bearing
-from tests.ways import go
 
 FREE = Budget()
 OWNERS = np.array([0, 0, 1, 1, 1, 2, 3])
@@ -321,7 +320,7 @@ def test_two_inequalities_leave_no_better_pair_than_the_formulas_say():
 
 
 @pytest.mark.parametrize("largest", [False, True])
-def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
+def test_a_search_to_its_end_finds_the_exact_marginal(largest):
     rng = np.random.default_rng(4)
     ended = 0
     for trial in range(30):
@@ -333,10 +332,12 @@ def test_a_search_to_its_end_finds_the_exact_marginal(largest, monkeypatch):
         totals = planar.prior + options.parts[every_context(options)].sum(axis=1)
         values = marginals(totals, added)
         exact = values.max() if largest else values.min()
-        search = PlanarSearch(MarginalSide(options, planar.prior, added, largest=largest, highest=highest))
+        search = PlanarSearch(
+            MarginalSide(options, planar.prior, added, largest=largest, highest=highest),
+            params=PlanarParams(largest_leaf=(1, 2, 4, 8)[trial % 4]),
+        )
         slack = 1e-9 * (1 + abs(exact))
         # Without leaves to enumerate the end is far away; the bounds must hold all the same.
-        monkeypatch.setattr(context_search, "LARGEST_LEAF", (1, 2, 4, 8)[trial % 4])
         for _ in range(60):
             low, high = sorted([search.bound, search.attained.value])
             assert low - slack <= exact <= high + slack
@@ -367,22 +368,20 @@ def test_the_bracket_is_tight_on_section_six(seed):
 def test_an_interrupt_leaves_a_valid_bracket(monkeypatch):
     f, owners = section_six(3, 4, 5)
     exact = ro.total_curvature(f, owners)
-    go(monkeypatch, SEARCHED)
     plain = LevelProgram.bound
     for call in (1, 4, 11, 41):
         monkeypatch.setattr(LevelProgram, "bound", interrupted_at(call, plain))
-        found = ro.total_curvature(f, owners, gap=0.0, time_limit=None)
+        found = ro.total_curvature(f, owners, gap=0.0, time_limit=None, params=SEARCHED)
         assert found.stop is ro.Stop.INTERRUPTED
         assert found.lower - 1e-9 <= exact.upper <= found.upper + 1e-9
 
 
 @pytest.mark.parametrize("unit", [1e-30, 1e-3, 1e30])
-def test_the_unit_of_length_does_not_matter(unit, monkeypatch):
+def test_the_unit_of_length_does_not_matter(unit):
     f, owners = section_six(0, 4, 5)
-    go(monkeypatch, SEARCHED)
-    plain = ro.total_curvature(f, owners, gap=0.1, time_limit=None, max_nodes=600)
+    plain = ro.total_curvature(f, owners, gap=0.1, time_limit=None, max_nodes=600, params=SEARCHED)
     scaled = ro.MaxEigenvalueObjective(f.prior * unit**2, f.information / unit**2)
-    found = ro.total_curvature(scaled, owners, gap=0.1, time_limit=None, max_nodes=600)
+    found = ro.total_curvature(scaled, owners, gap=0.1, time_limit=None, max_nodes=600, params=SEARCHED)
     assert found.lower <= plain.upper
     assert plain.lower <= found.upper
     assert (1 - found.lower) / (1 - found.upper) <= 1.1 + 1e-6
