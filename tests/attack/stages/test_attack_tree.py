@@ -91,11 +91,20 @@ def test_links_of_functions_known_by_their_values_are_chosen_until_the_time_is_u
 def test_an_attack_that_another_search_asks_for_again_goes_on():
     problem, plan, _ = network(24, 0)
     memory, outer = AttackMemory(), Budget(max_evaluations=100_000)
-    brief = ro.worst_case_attack(problem, plan, budget=outer, memory=memory)
-    again = ro.worst_case_attack(problem, plan, budget=outer, memory=memory)
+    brief = ro.worst_case_attack(problem, plan, budget=outer, memory=memory, brief=True)
+    again = ro.worst_case_attack(problem, plan, budget=outer, memory=memory, brief=True)
     assert brief.stop is ro.Stop.HEURISTIC
     assert again.stop is ro.Stop.CLOSED
     assert again.lower > brief.lower
+
+
+def test_a_budget_changes_no_stage():
+    problem, plan, _ = network(24, 0)
+    alone = ro.worst_case_attack(problem, plan, max_evaluations=100_000)
+    inside = ro.worst_case_attack(problem, plan, budget=Budget(max_evaluations=100_000))
+    assert alone.stop is ro.Stop.CLOSED
+    assert inside == alone
+    assert [row.name for row in inside.stages] == [row.name for row in alone.stages]
 
 
 @pytest.mark.parametrize("robots", [21, 30])
