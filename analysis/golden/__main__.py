@@ -1,17 +1,19 @@
 """The golden corpus: what the searches answered before a change, and what they answer now.
 
 Run as ``python -m analysis.golden record|compare [--parts networks complete plans certificates unusual] [--sample S]
-[--workers K] [--folder DIR]``. ``record`` measures the cases that the folder's files have not (``tests/golden`` by
-default), on all cores, row by row: run it again to go on. ``compare`` measures into its folder (``build/golden``) in
-the same way, and prints what both have: rows closed then and now, geometric means of gaps, processor seconds, proof
-sizes and verification now over then, and how many runs that are limited by nodes gave the same. It ends with 1 if
-two brackets have no value in common, and with ``--strict`` if a row was lost or a limited run differs. Seconds, and
-limits, are of the processor. ``--sample S``: cases whose record took S seconds in all.
+[--workers K] [--folder DIR] [--history FILE]``. ``record`` measures the cases that the folder's files have not
+(``tests/golden`` by default), on all cores, row by row: run it again to go on. ``compare`` measures into its folder
+(``build/golden``) in the same way, and prints what both have: rows closed then and now, geometric means of gaps,
+processor seconds, proof sizes and verification now over then, and how many runs that are limited by nodes gave the
+same. It ends with 1 if two brackets have no value in common, and with ``--strict`` if a row was lost or a limited run
+differs. Seconds, and limits, are of the processor. ``--sample S``: cases whose record took S seconds in all.
+``--history FILE`` adds the table to a file, with the commit.
 """
 
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
 from pathlib import Path
 
@@ -35,6 +37,7 @@ def main() -> int:
     parser.add_argument("--sample", type=float, default=None, help="seconds that the record of the chosen cases took")
     parser.add_argument("--workers", type=int, default=None, help="processes; one for each core by default")
     parser.add_argument("--folder", type=Path, default=None, help="of the files that are written")
+    parser.add_argument("--history", type=Path, default=None, help="CSV that the table is added to, with the commit")
     parser.add_argument("--strict", action="store_true", help="fail if a row is lost or a limited run differs")
     options = parser.parse_args()
     folder = options.folder or (RECORDED if options.what == "record" else COMPARED)
@@ -50,6 +53,9 @@ def main() -> int:
     now = {key: row for key, row in read_rows(folder, PARTS).items() if key in set(names)}
     lines = compared(recorded, now)
     print_table("Now over then, geometric means", lines)
+    if options.history is not None:
+        for line in lines:
+            append_csv(options.history, _measured_at() | line)
     listed = {"Brackets that have no value in common": apart(recorded, now)}
     listed |= {"Closed then and open now": lost(recorded, now), "Limited runs that differ": differing(recorded, now)}
     for title, keys in listed.items():
@@ -57,6 +63,13 @@ def main() -> int:
             print(f"\n{title}:", *(f"  {part}: {name}" for part, name in keys), sep="\n")
     false, *changed = listed.values()
     return 1 if false or (options.strict and any(changed)) else 0
+
+
+def _measured_at() -> dict[str, str]:
+    """The commit that is measured, and the day of that commit."""
+    command = ["git", "log", "-1", "--format=%h %cs"]
+    commit, day = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    return {"commit": commit, "day": day}
 
 
 if __name__ == "__main__":

@@ -136,7 +136,7 @@ def bound_by_trees(task: AttackTask, objective: InformationObjective, *, is_abou
     budget, bracket, params = task.budget, task.bracket, task.params.bounds
     plan, threat = task.values.plan, task.problem.threat
     part = budget.part(params.share, at_least=min(params.short_share * budget.seconds_left, params.short))
-    size = forced_size(threat, part, threat.graph.n_robots)
+    size = forced_size(threat, part, threat.graph.n_robots, task.params.trees)
     bracket.raise_lower(first_bound(objective, plan, threat, size))
     if is_about_values:
         bracket.raise_lower(tree_bound(objective, plan, threat, part, bracket.upper, params))

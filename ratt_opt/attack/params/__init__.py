@@ -42,6 +42,7 @@ from ratt_opt.attack.params.stages import (
     StageParams,
     ValueAnnealingParams,
 )
+from ratt_opt.graph.params import TreeParams
 
 __all__ = [
     "DEFAULT",
@@ -71,6 +72,7 @@ __all__ = [
     "SizeVectorParams",
     "StageParams",
     "ThresholdParams",
+    "TreeParams",
     "UnderestimatorParams",
     "ValueAnnealingParams",
 ]
@@ -91,6 +93,7 @@ class AttackParams:
     all_sets: AllSetsParams = field(default_factory=AllSetsParams)
     annealing: AnnealingParams = field(default_factory=AnnealingParams)
     bounds: BoundParams = field(default_factory=BoundParams)
+    trees: TreeParams = field(default_factory=TreeParams)
     threshold: ThresholdParams = field(default_factory=ThresholdParams)
     pricing: PricingParams = field(default_factory=PricingParams)
     dual_prices: DualPriceParams = field(default_factory=DualPriceParams)

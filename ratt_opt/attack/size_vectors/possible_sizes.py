@@ -34,23 +34,10 @@ if TYPE_CHECKING:
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
-__all__ = ["possible_sizes_bound", "unprotected_bound"]
+__all__ = ["possible_sizes_bound"]
 
 
 _SetValues = list[tuple[float, frozenset[int]]]
-
-
-def unprotected_bound(task: AttackTask, team: Team) -> None:
-    """Raise the lower bound to the worst case without protected links, no larger; keep its attack if allowed."""
-    problem, bracket = task.problem, task.bracket
-    relaxed = replace(problem, protected_links=frozenset())
-    start = AttackBracket(Attack(), relaxed.team_value(task.values.plan, Attack()), bracket.lower, bracket.rounding)
-    start.offer(bracket.attack, bracket.upper)
-    try:
-        _search(task, team, relaxed, start)
-    finally:
-        if not start.attack.links & problem.protected_links:
-            task.offer(start.attack)
 
 
 def possible_sizes_bound(task: AttackTask, team: Team, least: int) -> int:

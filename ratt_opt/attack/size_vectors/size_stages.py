@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["SIZE_STAGES", "search_size_vectors"]
 
 
-class NobodyLeft(Stage[SizeVectorSearch]):
+class NobodyLeftStage(Stage[SizeVectorSearch]):
     """Stage for an attacker that may blind all robots."""
 
     name = "nobody left"
@@ -31,7 +31,7 @@ class NobodyLeft(Stage[SizeVectorSearch]):
         return Stop.CLOSED
 
 
-class FamilyExchanges(Stage[SizeVectorSearch]):
+class FamilyExchangesStage(Stage[SizeVectorSearch]):
     """Stage that finds weak families of groups."""
 
     name = "exchanges of families"
@@ -41,7 +41,7 @@ class FamilyExchanges(Stage[SizeVectorSearch]):
         attack.exchange()
 
 
-class WeakestOfForcedSize(Stage[SizeVectorSearch]):
+class WeakestOfForcedSizeStage(Stage[SizeVectorSearch]):
     """Stage that bounds by the weakest set of the forced size."""
 
     name = "forced size"
@@ -59,7 +59,7 @@ class WeakestOfForcedSize(Stage[SizeVectorSearch]):
         attack.weakest_of_forced_size()
 
 
-class AnnealedOn(Stage[SizeVectorSearch]):
+class AnnealedOnStage(Stage[SizeVectorSearch]):
     """Stage that anneals until the end."""
 
     name = "annealed attacks"
@@ -75,7 +75,7 @@ class AnnealedOn(Stage[SizeVectorSearch]):
             attack.anneal()
 
 
-class AttackInHand(Stage[SizeVectorSearch]):
+class AttackInHandStage(Stage[SizeVectorSearch]):
     """Stage that tests the attack in hand before lower thresholds."""
 
     name = "attack in hand"
@@ -89,7 +89,7 @@ class AttackInHand(Stage[SizeVectorSearch]):
         attack.test_attack()
 
 
-class AttackInHandInTime(AttackInHand):
+class AttackInHandInTimeStage(AttackInHandStage):
     """Stage that tests the attack in hand within a part of the time."""
 
     def applies(self, attack: SizeVectorSearch) -> bool:
@@ -101,7 +101,7 @@ class AttackInHandInTime(AttackInHand):
         return Share(part=params.size_vectors.first_share)
 
 
-class AnnealedAlike(Stage[SizeVectorSearch]):
+class AnnealedAlikeStage(Stage[SizeVectorSearch]):
     """Stage that changes sizes and robots together."""
 
     name = "annealed attacks"
@@ -119,7 +119,7 @@ class AnnealedAlike(Stage[SizeVectorSearch]):
         attack.anneal()
 
 
-class PricesOfSmallGroups(Stage[SizeVectorSearch]):
+class PricesOfSmallGroupsStage(Stage[SizeVectorSearch]):
     """Stage that asks dual prices if all groups may be small."""
 
     name = "dual prices"
@@ -137,7 +137,7 @@ class PricesOfSmallGroups(Stage[SizeVectorSearch]):
         attack.dual_prices()
 
 
-class SizeThresholds(Stage[SizeVectorSearch]):
+class SizeThresholdsStage(Stage[SizeVectorSearch]):
     """Stage that decides thresholds by all vectors."""
 
     name = "thresholds"
@@ -148,15 +148,15 @@ class SizeThresholds(Stage[SizeVectorSearch]):
 
 
 SIZE_STAGES: tuple[Stage[SizeVectorSearch], ...] = (
-    NobodyLeft(),
-    FamilyExchanges(),
-    WeakestOfForcedSize(),
-    AnnealedOn(),
-    AttackInHandInTime(),
-    AttackInHand(),
-    AnnealedAlike(),
-    PricesOfSmallGroups(),
-    SizeThresholds(),
+    NobodyLeftStage(),
+    FamilyExchangesStage(),
+    WeakestOfForcedSizeStage(),
+    AnnealedOnStage(),
+    AttackInHandInTimeStage(),
+    AttackInHandStage(),
+    AnnealedAlikeStage(),
+    PricesOfSmallGroupsStage(),
+    SizeThresholdsStage(),
 )
 """Stages of an attack on a complete graph, by size vectors."""
 

@@ -13,10 +13,10 @@ from ratt_opt.budget import OutOfBudget
 if TYPE_CHECKING:
     from ratt_opt.budget import Stop
 
-__all__ = ["Thresholds", "ThresholdsOfFew"]
+__all__ = ["ThresholdsOfFewStage", "ThresholdsStage"]
 
 
-class Thresholds(Stage[AttackState]):
+class ThresholdsStage(Stage[AttackState]):
     """Stage that decides thresholds over all sets of robots."""
 
     name = "thresholds"
@@ -31,7 +31,7 @@ class Thresholds(Stage[AttackState]):
         return go_on(attack.task, begun if isinstance(begun, AllSets) else AllSets(attack.task))
 
 
-class ThresholdsOfFew(Thresholds):
+class ThresholdsOfFewStage(ThresholdsStage):
     """Stage for teams so small that nothing else need be tried."""
 
     def applies(self, attack: AttackState) -> bool:

@@ -11,10 +11,10 @@ from ratt_opt.attack.value_annealing import annealed_attacks
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
 
-__all__ = ["AnnealedOwnCriterion", "AnnealedValues"]
+__all__ = ["AnnealedOwnCriterionStage", "AnnealedValuesStage"]
 
 
-class AnnealedValues(Stage[AttackState]):
+class AnnealedValuesStage(Stage[AttackState]):
     """Stage that anneals attacks on any set function."""
 
     name = "annealed values"
@@ -32,7 +32,7 @@ class AnnealedValues(Stage[AttackState]):
         annealed_attacks(attack.task)
 
 
-class AnnealedOwnCriterion(AnnealedValues):
+class AnnealedOwnCriterionStage(AnnealedValuesStage):
     """Stage that anneals attacks on a criterion without compiled code."""
 
     def applies(self, attack: AttackState) -> bool:

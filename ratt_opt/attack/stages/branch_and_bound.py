@@ -7,10 +7,10 @@ from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Stage, go_on
 from ratt_opt.budget import Stop
 
-__all__ = ["BranchAndBound", "BranchAndBoundLater", "BranchAndBoundOfOwnCriterion"]
+__all__ = ["BranchAndBoundLaterStage", "BranchAndBoundOfOwnCriterionStage", "BranchAndBoundStage"]
 
 
-class BranchAndBound(Stage[AttackState]):
+class BranchAndBoundStage(Stage[AttackState]):
     """Stage that divides the attacks on any set function."""
 
     name = "branch and bound"
@@ -25,7 +25,7 @@ class BranchAndBound(Stage[AttackState]):
         return go_on(attack.task, AttackTree(attack.task))
 
 
-class BranchAndBoundLater(BranchAndBound):
+class BranchAndBoundLaterStage(BranchAndBoundStage):
     """Stage that leaves the branch and bound to a call that asks again."""
 
     def applies(self, attack: AttackState) -> bool:
@@ -39,7 +39,7 @@ class BranchAndBoundLater(BranchAndBound):
         return attack.task.budget.stop() or Stop.HEURISTIC
 
 
-class BranchAndBoundOfOwnCriterion(BranchAndBound):
+class BranchAndBoundOfOwnCriterionStage(BranchAndBoundStage):
     """Stage for a criterion without compiled code."""
 
     def applies(self, attack: AttackState) -> bool:

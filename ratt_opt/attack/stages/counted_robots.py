@@ -9,10 +9,10 @@ from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Stage
 from ratt_opt.problem import Attack
 
-__all__ = ["CountedRobots"]
+__all__ = ["CountedRobotsStage"]
 
 
-class CountedRobots(Stage[AttackState]):
+class CountedRobotsStage(Stage[AttackState]):
     """Stage for robots that are all alike."""
 
     name = "smallest largest group"

@@ -10,10 +10,10 @@ from ratt_opt.attack.staging import Stage, go_on
 if TYPE_CHECKING:
     from ratt_opt.budget import Stop
 
-__all__ = ["AnnealedAttacks", "DualPrices"]
+__all__ = ["AnnealedAttacksStage", "DualPricesStage"]
 
 
-class AnnealedAttacks(Stage[AttackState]):
+class AnnealedAttacksStage(Stage[AttackState]):
     """Stage that anneals attacks on a compiled criterion."""
 
     name = "annealed attacks"
@@ -32,7 +32,7 @@ class AnnealedAttacks(Stage[AttackState]):
         attack.is_annealed = True
 
 
-class DualPrices(Stage[AttackState]):
+class DualPricesStage(Stage[AttackState]):
     """Stage that decides thresholds by dual prices and pricing."""
 
     name = "dual prices"

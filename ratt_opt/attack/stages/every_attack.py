@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
     from ratt_opt.budget import Stop
 
-__all__ = ["EveryAttack", "EveryValuedAttack"]
+__all__ = ["EveryAttackStage", "EveryValuedAttackStage"]
 
 
-class EveryAttack(Stage[AttackState]):
+class EveryAttackStage(Stage[AttackState]):
     """Stage that tries every attack on a criterion: sparse networks and few cuts close by it with no gap at all."""
 
     name = "every attack"
@@ -38,7 +38,7 @@ class EveryAttack(Stage[AttackState]):
         return attack.enumeration.run(attack.task.budget)
 
 
-class EveryValuedAttack(Stage[AttackState]):
+class EveryValuedAttackStage(Stage[AttackState]):
     """Stage that tries every attack on any set function."""
 
     name = "every attack"

@@ -12,10 +12,16 @@ from ratt_opt.attack.staging import Share, Stage
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
 
-__all__ = ["ForcedSize", "ForcedSizeOfOwnCriterion", "ForcedSizeOnDenseGraphs", "PossibleSizes", "TreeInequalities"]
+__all__ = [
+    "ForcedSizeOfOwnCriterionStage",
+    "ForcedSizeOnDenseGraphsStage",
+    "ForcedSizeStage",
+    "PossibleSizesStage",
+    "TreeInequalitiesStage",
+]
 
 
-class TreeInequalities(Stage[AttackState]):
+class TreeInequalitiesStage(Stage[AttackState]):
     """Stage that raises the forced size by tree inequalities."""
 
     name = "tree inequalities"
@@ -28,7 +34,7 @@ class TreeInequalities(Stage[AttackState]):
         attack.sure = bound_by_trees(task, attack.objective, is_about_values=not attack.is_brief)
 
 
-class ForcedSize(Stage[AttackState]):
+class ForcedSizeStage(Stage[AttackState]):
     """Stage that searches for the weakest set of the forced size."""
 
     name = "forced size"
@@ -46,7 +52,7 @@ class ForcedSize(Stage[AttackState]):
         forced_group_bound(attack.task, attack.team, attack.sure)
 
 
-class ForcedSizeOfOwnCriterion(ForcedSize):
+class ForcedSizeOfOwnCriterionStage(ForcedSizeStage):
     """Stage for a criterion without compiled code."""
 
     def applies(self, attack: AttackState) -> bool:
@@ -58,7 +64,7 @@ class ForcedSizeOfOwnCriterion(ForcedSize):
         return Share()
 
 
-class ForcedSizeOnDenseGraphs(ForcedSize):
+class ForcedSizeOnDenseGraphsStage(ForcedSizeStage):
     """Stage that looks at the forced size early if the graph is dense."""
 
     def applies(self, attack: AttackState) -> bool:
@@ -70,7 +76,7 @@ class ForcedSizeOnDenseGraphs(ForcedSize):
         return Share(part=params.stages.first_bound, max_nodes=params.stages.first_bound_nodes)
 
 
-class PossibleSizes(Stage[AttackState]):
+class PossibleSizesStage(Stage[AttackState]):
     """Stage that bounds dense graphs by the sizes that groups can have together."""
 
     name = "possible sizes"

@@ -13,10 +13,10 @@ from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
 
-__all__ = ["Exchanges", "GreedySteps"]
+__all__ = ["ExchangesStage", "GreedyStepsStage"]
 
 
-class GreedySteps(Stage[AttackState]):
+class GreedyStepsStage(Stage[AttackState]):
     """Stage that lowers the upper end by greedy steps."""
 
     name = "greedy steps"
@@ -31,7 +31,7 @@ class GreedySteps(Stage[AttackState]):
         task.offer(greedy_attack(task.problem, task.values.plan, budget=task.budget).attack)
 
 
-class Exchanges(Stage[AttackState]):
+class ExchangesStage(Stage[AttackState]):
     """Stage that lowers the upper end of any set function."""
 
     name = "greedy steps and exchanges"

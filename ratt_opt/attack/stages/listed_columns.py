@@ -12,10 +12,10 @@ from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
 
-__all__ = ["ListedColumns", "ListedColumnsAgain"]
+__all__ = ["ListedColumnsAgainStage", "ListedColumnsStage"]
 
 
-class ListedColumns(Stage[AttackState]):
+class ListedColumnsStage(Stage[AttackState]):
     """Stage that lists the groups before attacks are annealed for long."""
 
     name = "listed columns"
@@ -48,7 +48,7 @@ class ListedColumns(Stage[AttackState]):
         attack.listed.run()
 
 
-class ListedColumnsAgain(ListedColumns):
+class ListedColumnsAgainStage(ListedColumnsStage):
     """Stage that goes on with the listed columns once attacks are annealed."""
 
     def applies(self, attack: AttackState) -> bool:

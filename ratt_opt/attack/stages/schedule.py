@@ -7,27 +7,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.stages.all_sets import Thresholds, ThresholdsOfFew
-from ratt_opt.attack.stages.annealed_values import AnnealedOwnCriterion, AnnealedValues
+from ratt_opt.attack.stages.all_sets import ThresholdsOfFewStage, ThresholdsStage
+from ratt_opt.attack.stages.annealed_values import AnnealedOwnCriterionStage, AnnealedValuesStage
 from ratt_opt.attack.stages.branch_and_bound import (
-    BranchAndBound,
-    BranchAndBoundLater,
-    BranchAndBoundOfOwnCriterion,
+    BranchAndBoundLaterStage,
+    BranchAndBoundOfOwnCriterionStage,
+    BranchAndBoundStage,
 )
-from ratt_opt.attack.stages.counted_robots import CountedRobots
-from ratt_opt.attack.stages.dual_prices import AnnealedAttacks, DualPrices
-from ratt_opt.attack.stages.every_attack import EveryAttack, EveryValuedAttack
+from ratt_opt.attack.stages.counted_robots import CountedRobotsStage
+from ratt_opt.attack.stages.dual_prices import AnnealedAttacksStage, DualPricesStage
+from ratt_opt.attack.stages.every_attack import EveryAttackStage, EveryValuedAttackStage
 from ratt_opt.attack.stages.forced_size import (
-    ForcedSize,
-    ForcedSizeOfOwnCriterion,
-    ForcedSizeOnDenseGraphs,
-    PossibleSizes,
-    TreeInequalities,
+    ForcedSizeOfOwnCriterionStage,
+    ForcedSizeOnDenseGraphsStage,
+    ForcedSizeStage,
+    PossibleSizesStage,
+    TreeInequalitiesStage,
 )
-from ratt_opt.attack.stages.greedy_steps import Exchanges, GreedySteps
-from ratt_opt.attack.stages.listed_columns import ListedColumns, ListedColumnsAgain
-from ratt_opt.attack.stages.single_robots import SingleRobots, SingleValues
-from ratt_opt.attack.stages.size_vectors import SizeVectors, SpatialSizeVectors, WithoutProtection
+from ratt_opt.attack.stages.greedy_steps import ExchangesStage, GreedyStepsStage
+from ratt_opt.attack.stages.listed_columns import ListedColumnsAgainStage, ListedColumnsStage
+from ratt_opt.attack.stages.single_robots import SingleRobotsStage, SingleValuesStage
+from ratt_opt.attack.stages.size_vectors import SizeVectorsStage, SpatialSizeVectorsStage
 
 if TYPE_CHECKING:
     from ratt_opt.attack.stages.attack_state import AttackState
@@ -36,37 +36,36 @@ if TYPE_CHECKING:
 __all__ = ["CRITERION_STAGES", "VALUE_STAGES"]
 
 VALUE_STAGES: tuple[Stage[AttackState], ...] = (
-    CountedRobots(),
-    SingleValues(),
-    EveryValuedAttack(),
-    Exchanges(),
-    AnnealedValues(),
-    Thresholds(),
-    BranchAndBoundLater(),
-    BranchAndBound(),
+    CountedRobotsStage(),
+    SingleValuesStage(),
+    EveryValuedAttackStage(),
+    ExchangesStage(),
+    AnnealedValuesStage(),
+    ThresholdsStage(),
+    BranchAndBoundLaterStage(),
+    BranchAndBoundStage(),
 )
 """Stages of an attack: set functions that are known by their values alone."""
 
 CRITERION_STAGES: tuple[Stage[AttackState], ...] = (
-    CountedRobots(),
-    ThresholdsOfFew(),
-    SingleRobots(),
-    EveryAttack(),
-    SizeVectors(),
-    SpatialSizeVectors(),
-    Thresholds(),
-    GreedySteps(),
-    WithoutProtection(),
-    ListedColumns(),
-    TreeInequalities(),
-    ForcedSizeOfOwnCriterion(),
-    AnnealedOwnCriterion(),
-    BranchAndBoundOfOwnCriterion(),
-    ForcedSizeOnDenseGraphs(),
-    AnnealedAttacks(),
-    ListedColumnsAgain(),
-    PossibleSizes(),
-    ForcedSize(),
-    DualPrices(),
+    CountedRobotsStage(),
+    ThresholdsOfFewStage(),
+    SingleRobotsStage(),
+    EveryAttackStage(),
+    SizeVectorsStage(),
+    SpatialSizeVectorsStage(),
+    ThresholdsStage(),
+    GreedyStepsStage(),
+    ListedColumnsStage(),
+    TreeInequalitiesStage(),
+    ForcedSizeOfOwnCriterionStage(),
+    AnnealedOwnCriterionStage(),
+    BranchAndBoundOfOwnCriterionStage(),
+    ForcedSizeOnDenseGraphsStage(),
+    AnnealedAttacksStage(),
+    ListedColumnsAgainStage(),
+    PossibleSizesStage(),
+    ForcedSizeStage(),
+    DualPricesStage(),
 )
 """Stages of an attack: criteria of information matrices."""

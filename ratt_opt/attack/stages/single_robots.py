@@ -21,10 +21,10 @@ from ratt_opt.setfunctions.metered import unmetered
 if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask
 
-__all__ = ["SingleRobots", "SingleValues"]
+__all__ = ["SingleRobotsStage", "SingleValuesStage"]
 
 
-class SingleRobots(Stage[AttackState]):
+class SingleRobotsStage(Stage[AttackState]):
     """Stage that bounds a criterion by its single robots."""
 
     name = "single robots"
@@ -34,7 +34,7 @@ class SingleRobots(Stage[AttackState]):
         attack.task.bracket.raise_lower(first_bound(attack.objective, attack.task.values.plan, attack.threat))
 
 
-class SingleValues(Stage[AttackState]):
+class SingleValuesStage(Stage[AttackState]):
     """Stage that bounds any set function by its single robots."""
 
     name = "single robots"

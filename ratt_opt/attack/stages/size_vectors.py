@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.size_vectors.possible_sizes import unprotected_bound
 from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.stages.attack_state import AttackState
@@ -14,10 +13,10 @@ if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
     from ratt_opt.budget import Stop
 
-__all__ = ["SizeVectors", "SpatialSizeVectors", "WithoutProtection"]
+__all__ = ["SizeVectorsStage", "SpatialSizeVectorsStage"]
 
 
-class SizeVectors(Stage[AttackState]):
+class SizeVectorsStage(Stage[AttackState]):
     """Stage for planar targets on a complete graph."""
 
     name = "size vectors"
@@ -32,7 +31,7 @@ class SizeVectors(Stage[AttackState]):
         return search_size_vectors(SizeVectorSearch(attack.task, attack.team))
 
 
-class SpatialSizeVectors(SizeVectors):
+class SpatialSizeVectorsStage(SizeVectorsStage):
     """Stage for targets that are not in the plane: bounds on their sets are weaker, so other stages get a part."""
 
     def applies(self, attack: AttackState) -> bool:
@@ -42,18 +41,3 @@ class SpatialSizeVectors(SizeVectors):
     def share(self, params: AttackParams) -> Share:
         """Return a part that leaves time for other stages."""
         return Share(part=params.stages.spatial)
-
-
-class WithoutProtection(Stage[AttackState]):
-    """Stage that lets the attacker cut protected links too: the worst case is no larger then."""
-
-    name = "without protection"
-
-    def applies(self, attack: AttackState) -> bool:
-        """Packed team, complete graph, protected links."""
-        return attack.team is not None and attack.task.problem.communication.is_complete
-
-    def run(self, attack: AttackState) -> None:
-        """Attackers that may cut protected links too."""
-        assert attack.team is not None
-        unprotected_bound(attack.task, attack.team)

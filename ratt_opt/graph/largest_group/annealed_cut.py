@@ -10,6 +10,7 @@ import numpy as np
 
 from ratt_opt.errors import InputError
 from ratt_opt.graph.largest_group.counting import largest_left
+from ratt_opt.graph.params import CutAnnealingParams
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import CutAnnealRecord, loops
 
@@ -23,21 +24,19 @@ if TYPE_CHECKING:
 
 __all__ = ["Cooling", "PricedArcs", "annealed_cut"]
 
-HOT, COLD, OVERSIZE = 3.0, 0.15, 2.0
-"""Temperatures and the price of a robot too many in a group, in links; a robot's mean number of links and half as many
-again, if that is more: where robots have many links, groups else stay too large."""
-MOVES, MOVES_AT_ONCE = 1_500, 20_000
-"""Moves for each robot in a cooling, and moves between two looks at the clock. At 50 to 200 robots more find no better
-cut."""
-MISSES = 4
-"""Sizes in a row that are not met before annealing gives up."""
-SPARE_GROUPS = (0.0, 0.05, 0.15, 0.3, 0.6, 1.0)
-"""Groups beyond the fewest that hold all robots, one cooling each, in shares of these. Measured on sparse disks: at 50
-robots none are needed, at 200 a third or more."""
+
+DEFAULT = CutAnnealingParams()
+"""Parameters of annealing that is not given any."""
 
 
 def annealed_cut(
-    threat: Threat, cut: frozenset[Link], lower: int, budget: Budget, *, ignoring: Collection[int] = ()
+    threat: Threat,
+    cut: frozenset[Link],
+    lower: int,
+    budget: Budget,
+    *,
+    ignoring: Collection[int] = (),
+    params: CutAnnealingParams = DEFAULT,
 ) -> frozenset[Link]:
     """A cut that leaves a smaller largest group than ``cut`` does, if annealing finds one.
 
@@ -48,9 +47,9 @@ def annealed_cut(
     """
     best, low, missed = cut, lower, 0
     size = largest_left(threat.graph, best, ignoring)
-    while size > lower and missed < MISSES and budget.stop() is None:
+    while size > lower and missed < params.misses and budget.stop() is None:
         goal = (low + size) // 2 if low < size else size - 1 - missed
-        found = _cut_below(threat, goal, budget, ignoring) if goal >= lower else None
+        found = _cut_below(threat, goal, budget, ignoring, params) if goal >= lower else None
         if found is not None:
             best, size, missed = found, largest_left(threat.graph, found, ignoring), 0
         elif low < size:
@@ -60,18 +59,20 @@ def annealed_cut(
     return best
 
 
-def _cut_below(threat: Threat, size: int, budget: Budget, ignoring: Collection[int]) -> frozenset[Link] | None:
+def _cut_below(
+    threat: Threat, size: int, budget: Budget, ignoring: Collection[int], params: CutAnnealingParams
+) -> frozenset[Link] | None:
     """A cut within the budget that leaves groups of at most ``size`` robots that count, if a few coolings find one."""
     n_robots = threat.graph.n_robots
     counts = np.array([i not in ignoring for i in range(n_robots)], dtype=np.int64)
     network, rng, fewest = PricedArcs.of(threat), np.random.default_rng(size), -(-int(counts.sum()) // size)
-    for count in dict.fromkeys(fewest + round(share * fewest) for share in SPARE_GROUPS):
-        cooling = Cooling(network, counts, rng.integers(0, count, n_robots), count, size, rng)
-        within, moves = threat.alpha_c + 1, MOVES * n_robots
-        for start in range(0, moves, MOVES_AT_ONCE):
+    for count in dict.fromkeys(fewest + round(share * fewest) for share in params.spare_groups):
+        cooling = Cooling(network, counts, rng.integers(0, count, n_robots), count, size, rng, params=params)
+        within, moves = threat.alpha_c + 1, params.moves * n_robots
+        for start in range(0, moves, params.moves_at_once):
             if budget.stop() is not None:
                 break
-            within = cooling.run(start, min(start + MOVES_AT_ONCE, moves), moves, within)
+            within = cooling.run(start, min(start + params.moves_at_once, moves), moves, within)
             if within <= threat.alpha_c:
                 return frozenset((i, j) for i, j in threat.graph.links if cooling.best[i] != cooling.best[j])
     return None
@@ -122,6 +123,7 @@ class Cooling:
         rng: np.random.Generator,
         *,
         unit: float = 1.0,
+        params: CutAnnealingParams = DEFAULT,
     ) -> None:
         n_robots, arcs = len(network.start) - 1, len(network.robot)
         checked("counts", counts, np.int64, (n_robots,))
@@ -132,9 +134,8 @@ class Cooling:
         self._arrays = network, counts, group, sizes  # the record has their addresses only
         # The state of NumPy's generator, and the function of its that reads it: `bitgen_t` in its reference.
         self._rng, bits = rng, rng.bit_generator.ctypes
-        oversize = (
-            max(OVERSIZE, 1.5 * arcs / n_robots) * unit * max(int((counts > 0).sum()), 1) / max(int(counts.sum()), 1)
-        )
+        counted = max(int((counts > 0).sum()), 1) / max(int(counts.sum()), 1)
+        oversize = max(params.oversize, 1.5 * arcs / n_robots) * unit * counted
         self._record = CutAnnealRecord(
             robots=n_robots,
             groups=count,
@@ -146,8 +147,8 @@ class Cooling:
             group=address(group),
             best=address(self.best),
             sizes=address(sizes),
-            hot=HOT * unit,
-            cold=COLD * unit,
+            hot=params.hot * unit,
+            cold=params.cold * unit,
             oversize=oversize,
             random=bits.state_address,
             uniform=cast(bits.next_double, c_void_p).value,

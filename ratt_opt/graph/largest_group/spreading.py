@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.graph.params import TreeParams
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
@@ -37,47 +38,40 @@ TREES = "tree inequalities of a linear program, recomputed from their multiplier
 
 SCALE = 2.0**24
 """Multipliers become integers in these units: the sums below stay under 2^63."""
-TOWARDS_PROGRAM = 0.2
-"""Point at which trees are separated, from the best one that keeps all inequalities (0) to the program's own (1).
-Measured at 50 to 200 robots: 30 to 45 rounds; at 1 more than 100, and at 200 robots no bound in a minute."""
-SLACK, SHORT = 1e-4, 1e-7
-"""Trees that the program's point violates by less are not added; every link has at least this length."""
-MOST_TREES = 6_000
-"""Trees in a program, at most: sparse graphs of 200 robots take 5,000; with more, dense graphs take minutes."""
-
-SOON, LARGEST_SOON = 250_000, 3_000_000
-"""Trees times links from which :func:`forced_size_soon` adds no more (0.1 to 2 s at 20 to 200 robots), and robots times
-links up to which it is asked: paths from every robot are what a program begins with."""
+SHORT = 1e-7
+"""Least length of a link: shortest paths then have few links."""
+DEFAULT = TreeParams()
+"""Parameters of programs that are not given any."""
 
 
-def forced_size(threat: Threat, budget: Budget, enough: int) -> int:
+def forced_size(threat: Threat, budget: Budget, enough: int, params: TreeParams = DEFAULT) -> int:
     """A number of unblinded robots that every attack leaves in some group; looks no further than ``enough``.
 
     What was found out about the last few threats is kept, and gone on with.
     """
-    return _size_program(threat).run(budget, enough)
+    return _size_program(threat, params).run(budget, enough)
 
 
 @lru_cache(maxsize=8)
-def _size_program(threat: Threat) -> TreeProgram:
-    return TreeProgram(threat, np.ones(threat.graph.n_robots, dtype=np.int64))
+def _size_program(threat: Threat, params: TreeParams) -> TreeProgram:
+    return TreeProgram(threat, np.ones(threat.graph.n_robots, dtype=np.int64), params)
 
 
-def forced_size_soon(threat: Threat, budget: Budget) -> int:
+def forced_size_soon(threat: Threat, budget: Budget, params: TreeParams = DEFAULT) -> int:
     """:func:`forced_size` as far as a fixed amount of work gets: the same in every call."""
     links, n_robots = len(threat.graph.links), threat.graph.n_robots
-    if links == 0 or links * n_robots > LARGEST_SOON or budget.is_over:
+    if links == 0 or links * n_robots > params.largest_soon or budget.is_over:
         return 0
-    program = TreeProgram(threat, np.ones(n_robots, dtype=np.int64))
-    return program.run(budget, n_robots, most_trees=SOON // links)
+    program = TreeProgram(threat, np.ones(n_robots, dtype=np.int64), params)
+    return program.run(budget, n_robots, most_trees=params.soon // links)
 
 
-def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int) -> int:
+def forced_weight(threat: Threat, weights: IntArray, budget: Budget, enough: int, params: TreeParams = DEFAULT) -> int:
     """A weight that every attack leaves to the unblinded robots of some group; looks no further than ``enough``.
 
     ``weights`` : (N,) of the robots, in [0, 2^20], not all 0
     """
-    return TreeProgram(threat, weights).run(budget, enough)
+    return TreeProgram(threat, weights, params).run(budget, enough)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +89,8 @@ class TreeProgram:
     Weights are integers in trees and multiples of the largest in the program.
     """
 
-    def __init__(self, threat: Threat, weights: IntArray) -> None:
-        self.weights, self.unit = weights, float(weights.max())
+    def __init__(self, threat: Threat, weights: IntArray, params: TreeParams = DEFAULT) -> None:
+        self.weights, self.unit, self.params = weights, float(weights.max()), params
         self.links = sorted(threat.graph.links)
         self.n_robots, self.n_links = threat.graph.n_robots, len(self.links)
         self.ends = np.array(self.links, dtype=np.int64).reshape(-1, 2)
@@ -120,11 +114,12 @@ class TreeProgram:
         self.multipliers: FloatArray = np.zeros(0)
         self.best, self.is_done = 0, False
 
-    def run(self, budget: Budget, enough: int, most_trees: int = MOST_TREES) -> int:
+    def run(self, budget: Budget, enough: int, most_trees: int | None = None) -> int:
         """Add trees until ``enough`` is proved or nothing more can be; the weight proved so far."""
+        most = self.params.most_trees if most_trees is None else most_trees
         while not (self.is_done or self.best >= min(enough, self.reachable) or budget.stop() is not None):
             refined = self.refine(budget)
-            self.is_done = not budget.is_over and (not refined or len(self.trees) > most_trees)
+            self.is_done = not budget.is_over and (not refined or len(self.trees) > most)
             self.best = max(self.best, self.proved)
         return self.best
 
@@ -152,7 +147,7 @@ class TreeProgram:
 
     def refine(self, budget: Budget) -> bool:
         """Add trees and solve again; whether anything was learnt."""
-        step = TOWARDS_PROGRAM
+        step = self.params.towards_program
         fresh: list[Tree] = []
         while not fresh and step <= 1.0 and not budget.is_over:
             at = step * self.point + (1 - step) * self.inside
@@ -160,7 +155,8 @@ class TreeProgram:
             if kept.sum(axis=1).max() < self.needed:
                 self.inside, self.needed = at, float(kept.sum(axis=1).max())
             trees = [self._tree(root, *found) for root, found in enumerate(zip(kept, distance, before, strict=True))]
-            fresh = [t for t in trees if t.weight - t.values @ self.point[t.columns] > (self.size + SLACK) * self.unit]
+            least = (self.size + self.params.slack) * self.unit
+            fresh = [t for t in trees if t.weight - t.values @ self.point[t.columns] > least]
             step = 1.0 if step < 1.0 < 2 * step else 2 * step
         if not fresh:
             return False
@@ -193,7 +189,7 @@ class TreeProgram:
     @property
     def reachable(self) -> int:
         """No weight above this can be proved: the best point known has no more in any group."""
-        return ceil((self.needed - SLACK) * self.unit)
+        return ceil((self.needed - self.params.slack) * self.unit)
 
     @property
     def proved(self) -> int:

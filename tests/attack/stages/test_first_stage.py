@@ -31,7 +31,7 @@ def added(tmp_path, monkeypatch):
     spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    stage = module.ProtectedRobots()
+    stage = module.ProtectedRobotsStage()
     add_stage(monkeypatch, stage, after="single robots")
     return stage
 

@@ -9,7 +9,7 @@ import pytest
 from ratt_opt import InputError
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.graph.largest_group import annealed_cut as module
+from ratt_opt.graph.largest_group.annealed_cut import DEFAULT as PARAMS
 from ratt_opt.graph.largest_group.annealed_cut import Cooling, PricedArcs, annealed_cut
 from ratt_opt.graph.largest_group.heuristic_cut import heuristic_cut
 from ratt_opt.graph.threat import Threat
@@ -61,7 +61,7 @@ def plainly_cooled(n_robots, links, prices, counts, group, labels, size, rng, mo
         before, home = links_cut(links, prices, group) + oversize * too_many(), group[i]
         group[i] = to
         worse = links_cut(links, prices, group) + oversize * too_many() - before
-        heat = module.HOT * (module.COLD / module.HOT) ** (move / moves)
+        heat = PARAMS.hot * (PARAMS.cold / PARAMS.hot) ** (move / moves)
         if worse > 0 and rng.random() >= np.exp(-worse / heat):
             group[i] = home
         elif too_many() == 0 and links_cut(links, prices, group) < fewest:
@@ -79,7 +79,7 @@ def test_a_cooling_makes_the_moves_of_the_definition(seed):
     threat = Threat(CommunicationGraph(n_robots, frozenset(links)), 0, 0, protected_links=protected)
     prices = [len(links) + 1 if link in protected else 1 for link in links]
     counts, group = rng.integers(0, 2, n_robots), rng.integers(0, labels, n_robots)
-    oversize = max(module.OVERSIZE, 1.5 * 2 * len(links) / n_robots)
+    oversize = max(PARAMS.oversize, 1.5 * 2 * len(links) / n_robots)
     expected = plainly_cooled(
         n_robots, links, prices, counts, group.tolist(), labels, size, np.random.default_rng(seed), 200, oversize
     )
