@@ -214,6 +214,12 @@ class DisjointSetsRecord(Structure):
     starts: Int64s; rest_costs: Doubles; single: Doubles; must: UInt64; threshold: Double; room: Double
     remembered: Int64; depth: Int64; found: Int64; memory: UInt64s; stack: Pointer[ChoiceRecord]; best: Int64s
 
+@record
+class SeersRecord(Structure):
+    """The elements that tell about one target, robot by robot."""
+    robots: Int32; dimension: Int32; criterion: Int32; weight: Double; baseline: Double; error: Double; first: Int64s
+    prior: Doubles; information: Doubles
+
 class Loops(Protocol):
     """Functions of the compiled loops, by header."""
 
@@ -338,6 +344,10 @@ class Loops(Protocol):
     def exchange_robots(self, team: TeamRecord, kept: Doubles, where: Int8s, pairs: Int64, scan: ScanRecord) -> Int: ...
     def search_disjoint(self, d: DisjointSetsRecord, work: Int64) -> Int: ...
     def sums_of_sets(self, count: Int64, masks: UInt64s, amounts: Doubles, sums: Doubles) -> None: ...
+
+    # target_sets.h
+    def largest_excess(self, seers: SeersRecord, prices: Doubles, floor: Double, tolerance: Double, most: Int64,
+                       chosen: Int64s) -> Double: ...
 
 loops = cast("Loops", Loader(Loops))
 """Functions, bound at the first use."""

@@ -15,11 +15,11 @@ RECORD = FOLDER / "loops.sha256"
 COMPILED = """
     annealing column_annealing contexts cover cover_attacks cover_dive cut_annealing cut_states disjoint dominance
     elements exchanges flow greedy group_tree groups keeping kept_links lattice levels marginal_dive needs outputs
-    polytopes pricing sets_of_size team thresholds
+    polytopes pricing sets_of_size target_sets team thresholds
 """
 HEADERS = """
     annealing covers cut_states elements group_search groups kept_links lattice marginals outputs planar polytopes
-    pricing random sets sets_of_size team
+    pricing random sets sets_of_size target_sets team
 """
 TO_COMPILE = tuple(SOURCES / f"{name}.c" for name in COMPILED.split())
 """Other files in the folder are neither compiled nor counted: backups, drafts, what a merge left."""

@@ -101,6 +101,7 @@ class BranchAndBound:
         self.frontier.current = node = narrowed
         nodes, stalls = slices.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
+        hulls = self.rounds.hulls_at(nodes)
         why_stop = slices.stop_within_node if self.rounds.begins_with_rows else slices.stop
         self.rounds.begin(node)
         while True:
@@ -120,7 +121,10 @@ class BranchAndBound:
                 self.incumbent.improve(plan)
             self.frontier.current = node = self._eliminate(node, *found)
             stalls = stalls + 1 if before - node.bound < STALL * (node.bound - self.rule.level) else 0
-            if not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls:
+            stalled = not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls
+            if stalled and hulls > 0 and self.rounds.sharpen(node, relaxed):
+                hulls, stalls, stalled = hulls - 1, 0, False
+            if stalled:
                 if nodes & (nodes - 1) == 0:  # the first nodes, and ever fewer
                     self.incumbent.improve(plan)
                 if self.rule.closes(node.bound):  # by a plan found just now

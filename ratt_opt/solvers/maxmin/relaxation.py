@@ -153,6 +153,10 @@ class CutRounds:
         """True if rows are used from the first nodes on."""
         return self._rows_from == 0
 
+    def hulls_at(self, nodes: int) -> int:
+        """Number of rounds with hulls at the node of this number: none below the root."""
+        return self._params.hulls_at_root if nodes == 1 else 0
+
     def use(self, k: int) -> None:
         """Bring cut ``k`` into the program."""
         self._program.use(k, float(self.cuts.constants[k]), self.cuts.scores(k))
@@ -225,6 +229,19 @@ class CutRounds:
         return self.adversary.learn_relaxed(of_robot) and self._use_rows(
             rows, node, rows.at(selection, of_robot), (selection, level)
         )
+
+    def sharpen(self, node: TreeNode, relaxed: RelaxedPlan) -> bool:
+        """Use rows of hulls at the relaxed plan, if there are rows; whether they cut it off."""
+        if (rows := self.cuts.rows) is None:
+            return False
+        level, selection = relaxed.level - VIOLATED * abs(relaxed.level), relaxed.selection
+        of_robot = self.task.mixed(selection)
+        groups = rows.at(selection, of_robot)
+        binding = self.cuts.groups[relaxed.cuts[np.argsort(-relaxed.duals, kind="stable")]]
+        lowest = list(dict.fromkeys(binding.tolist()))[: self._params.hull_groups]
+        if not rows.sharpen(groups, lowest, level - self.winners.plans.level):
+            return False
+        return self._use_rows(rows, node, rows.at(selection, of_robot), (selection, level))
 
     def _use_rows(
         self, rows: RowSeparation, node: TreeNode, groups: RelaxedGroups, off: tuple[FloatArray, float]

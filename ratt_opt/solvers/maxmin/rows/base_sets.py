@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.elements import Task
     from ratt_opt.solvers.maxmin.rows.params import RowParams
 
-__all__ = ["base_set_inequalities", "semidefinite"]
+__all__ = ["base_set_inequalities", "first_of_each_class", "semidefinite"]
 
 EIGENVALUES = 8
 """Roundings, of a matrix's size and for each dimension, by which computed eigenvalues may be off."""
@@ -47,14 +47,14 @@ def base_set_inequalities(task: Task, params: RowParams) -> list[Inequalities]:
     objective, error = task.objective, params.value_errors * task.problem.evaluation_error
     if not np.isfinite(error):  # nothing is known of differences of values
         return []
-    information, first = semidefinite(objective.information), _first_of_each_class(task)
+    information, first = semidefinite(objective.information), first_of_each_class(task)
     everything = task.objective.posterior_mixture(np.ones(objective.n))
     least = params.similar * objective.target_values(everything)
     every = (_of_target(objective, information[:, j], (j, first), params, error) for j in range(objective.n_targets))
     return [_without_similar(task, own, float(tolerance)) for own, tolerance in zip(every, least, strict=True)]
 
 
-def _first_of_each_class(task: Task) -> IntArray:
+def first_of_each_class(task: Task) -> IntArray:
     """(E,) the element that a search takes for each: of equal ones a set has one, and is worth as much with another."""
     first = np.arange(task.objective.n)
     for classes in task.classes:

@@ -30,6 +30,15 @@ class RowParams:
     ``newest`` : share of the newest relaxed plan in that mean
     ``starts`` : known outcomes from which robots are exchanged
     ``steps`` : exchanges of one descent at most
+    ``hulls_at_root`` : rounds with hulls, once rows stall at the root. With one more at each node, 20 cameras
+        had a tenth of the nodes, and as much open after a minute
+    ``hull_groups`` : groups with the lowest rows that get hulls in one round
+    ``hull_gain`` : of what is open at a node, for all targets together: what a hull has to lower its target's bound by
+    ``least_share`` : weights of elements up to this are none for a hull
+    ``hull_tolerance`` : of a target's largest value, by which a hull may be higher than the concave envelope
+    ``hull_inexact`` : share of that gain, likewise: fewer searches against weaker inequalities
+    ``hull_rounds``, ``hull_lifts`` : sets that one hull adds at most, and times that other elements' scores are raised
+    ``hull_nodes`` : of one search for the set that violates an inequality most
     """
 
     unseen: float = 0.25
@@ -48,3 +57,12 @@ class RowParams:
     newest: float = 0.2
     starts: int = 3
     steps: int = 30
+    hulls_at_root: int = 20
+    hull_groups: int = 8
+    hull_gain: float = 0.03
+    least_share: float = 1e-3
+    hull_tolerance: float = 1e-5
+    hull_inexact: float = 0.2
+    hull_rounds: int = 60
+    hull_lifts: int = 25
+    hull_nodes: int = 20_000

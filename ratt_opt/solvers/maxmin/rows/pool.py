@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt.bounds.cuts import ROUNDING
 from ratt_opt.solvers.maxmin.proof import TangentCut
-from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities
+from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities, first_of_each_class
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ class InequalityPool:
     def __init__(self, task: Task, params: RowParams) -> None:
         self.task, self.params = task, params
         objective = task.objective
+        self.first = first_of_each_class(task)
         self._targets, self._constants = np.zeros(0, dtype=np.int64), np.zeros(0)
         self._scores = np.zeros((1, objective.n))
         self._origins: list[TargetInequality] = []

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.solvers.maxmin.rows.base_sets import semidefinite
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
+from ratt_opt.solvers.maxmin.rows.hulls import as_inequalities, hulls_of
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
 from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.pool import InequalityPool
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.elements import Choices, Task
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.rows.hulls import TargetHull
     from ratt_opt.solvers.maxmin.rows.pool import Row
 
 __all__ = ["RelaxedGroups", "RowSeparation"]
@@ -45,6 +48,7 @@ class RowSeparation:
         self._most = task.objective.target_values(everything)
         """(M,) what all elements together are worth for each target."""
         self._mean = np.zeros(task.objective.n)
+        self.hulls = hulls_of(task, params, semidefinite(task.objective.information), self.inequalities.first)
 
     @staticmethod
     def fits(task: Task, params: RowParams | None = None) -> bool:
@@ -112,6 +116,36 @@ class RowSeparation:
         relaxed = RelaxedGroups(selection, point[None], bounds, objective.target_values(point)[None])
         self._touch(relaxed, [0])
         return self.inequalities.row(self.outcomes.groups[group], selection)
+
+    def sharpen(self, relaxed: RelaxedGroups, groups: list[int], open_value: float) -> bool:
+        """Keep hulls of targets at some groups' points that lower the rows there; whether there are any."""
+        params, owner = self.params, self.task.problem.robot
+        least = params.hull_gain * max(open_value, 0.0) / len(self._most)
+        found: dict[tuple[int, bytes], tuple[int, float, FloatArray]] = {}
+        tried = set()
+        for g in groups:
+            inside = np.isin(owner, self.outcomes.groups[g])
+            for j, hull in enumerate(self.hulls):
+                if hull is None or self.budget.is_over:
+                    continue
+                share = np.where(inside, relaxed.selection, 0.0)[hull.elements]
+                key = j, share.tobytes()
+                if key in tried:
+                    continue
+                tried.add(key)
+                below = float(min(relaxed.bounds[g, j], relaxed.exact[g, j])) - max(least, params.lower * self._most[j])
+                inequality = hull.inequality(share, below, params.hull_inexact * least)
+                if inequality is not None and inequality[0] + inequality[1] @ share < below:
+                    found[key] = j, inequality[0], self._spread(hull, inequality[1])
+        if found:
+            self.inequalities.add([as_inequalities(list(found.values()))])
+        return bool(found)
+
+    def _spread(self, hull: TargetHull, scores: FloatArray) -> FloatArray:
+        """(E,) scores of a hull's elements (k,), and of those that are equal to them."""
+        every = np.zeros(self.task.objective.n)
+        every[hull.elements] = scores
+        return np.asarray(every[self.inequalities.first])
 
     def learn(self, relaxed: RelaxedGroups, level: float) -> bool:
         """Exchange blinded robots of known outcomes for some that leave rows less than ``level``; whether one does."""
