@@ -27,6 +27,7 @@ from ratt_opt.solvers.maxmin.elements import Elements
 from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
 from ratt_opt.solvers.maxmin.proof import Leaf, TangentCut, UpperProof, WinnerBranch
 from ratt_opt.solvers.maxmin.time_slices import TimeSlicesUntil
+from ratt_opt.solvers.maxmin.walk import Walk
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
@@ -57,11 +58,14 @@ class DepthParams:
 
     ``first`` : if rows are there from the root, at first; ``most`` : without rows, and after a turn that lowered the
     upper end; ``in_vain`` : factor after each other turn beside rows: fast ends of either search against slow ones
+    ``walk_kicks``, ``walk_share`` : kicks, and share of the time left, for better plans before rows begin at the root
     """
 
     first: float = 2.5
     most: float = 10.0
     in_vain: float = 0.25
+    walk_kicks: int = 100
+    walk_share: float = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,6 +186,8 @@ class UpperBoundPortfolio:
 
     def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
+        if self._beside_rows and slices.budget.nodes == 0:
+            self._walk(slices)
         if self._in_depth is None:
             return self._concave.run(slices, progress)
         while True:
@@ -197,6 +203,11 @@ class UpperBoundPortfolio:
                 return Stop.GAP
             self._nodes = self._slice
             self._slice *= SLICE_GROWTH
+
+    def _walk(self, slices: TimeSlices) -> None:
+        """Look for a better plan before the root: what closes a node is measured by the best one."""
+        walk = Walk(self._known.incumbent, np.random.default_rng(0))
+        walk.run(slices.budget.part(self._params.walk_share), self._params.walk_kicks)
 
     @property
     def _beside_rows(self) -> bool:
