@@ -24,7 +24,7 @@ from ratt_opt.running.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
 from ratt_opt.setfunctions.information import packed
-from ratt_opt.solvers.maxmin.solve import proved_by_tangents
+from ratt_opt.solvers.maxmin.tangent_proofs import proved_by_tangents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,6 +18,8 @@ from ratt_opt.solvers.by_values.reliance import check_small
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
 
@@ -30,9 +32,16 @@ MOST_OUTCOMES = 200_000
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
-def solve_by_values(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_cs: int | None = None) -> MaxMinResult:
+def solve_by_values(
+    problem: Problem,
+    budget: Budget,
+    gap: float = 1e-9,
+    alpha_cs: int | None = None,
+    otherwise: Callable[[], MaxMinResult | None] | None = None,
+) -> MaxMinResult:
     """Bracket the optimum of any non-decreasing function; ``alpha_cs`` : what RATT was asked before, if it was.
 
+    ``otherwise`` : a bracket of the same optimum by another search, used if plans are too many to enumerate
     Relies on that (checked if it is small). A spent budget or an interrupt returns the bracket.
 
     Raises
@@ -48,6 +57,9 @@ def solve_by_values(problem: Problem, budget: Budget, gap: float = 1e-9, alpha_c
         if found is not None and found.stop in DONE:
             return found
         search.learn(found)
+        if otherwise is not None:
+            search.learn(otherwise())
+            budget.check()
         stop = search.run(gap)
     except OutOfBudget as out:
         stop = out.stop

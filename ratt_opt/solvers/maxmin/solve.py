@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,7 @@ from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.solve_by_values import solve_by_values
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.maxmin.coverage import CoverageParams, CoverageTrace
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
 from ratt_opt.solvers.maxmin.known import Known
@@ -39,7 +40,6 @@ __all__ = [
     "check_limits",
     "nonrobust_optimum",
     "nonrobust_search",
-    "proved_by_tangents",
     "solve_in_coordinates",
     "solve_maxmin",
 ]
@@ -68,7 +68,7 @@ def solve_maxmin(
     and branch and bound, in the coordinates that are measured (:func:`measured_coordinates`). Every bound is derived
     from the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
     the multipliers are used. Other set functions are enumerated if that is possible, and bracketed if it is not
-    (``solvers/by_values``).
+    (``solvers/by_values``); sums of best elements, such as coverage, as a trace, too (``coverage.py``).
 
     Parameters
     ----------
@@ -93,11 +93,26 @@ def solve_maxmin(
     check_problem(problem)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
-        return solve_by_values(problem, budget, gap, alpha_cs)
+        return solve_by_values(problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap))
     searched = with_unit_prior(measured_coordinates(problem))
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
     found = solve_in_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)
     return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
+
+
+def _solve_as_trace(problem: Problem, budget: Budget, gap: float) -> MaxMinResult | None:
+    """Bracket the optimum of a sum of best elements by that of a trace; ``None`` if there is none or values count."""
+    params = CoverageParams()
+    trace = CoverageTrace.of(problem, params) if np.isinf(budget.evaluations_left) else None
+    if trace is None:
+        return None
+    most = None if np.isfinite(budget.seconds_left) else params.nodes
+    if budget.max_nodes is not None:
+        most = max(int(params.share * budget.nodes_left(budget.max_nodes)), 1)
+    part = budget.part(params.share)
+    found = solve_maxmin(trace.problem, gap=trace.gap(gap), max_nodes=most, budget=part)
+    budget.nodes += found.nodes
+    return trace.carried_over(found)
 
 
 def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
@@ -136,40 +151,6 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     except KeyboardInterrupt:
         stop = budget.interrupt()
     return _result(problem, incumbent, search, stop, gap)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TangentProofParams:
-    """Limits of the search for a proof without inequalities of single targets.
-
-    ``share`` : of the seconds left; ``nodes``, ``times`` : at most this many nodes, or times those of the first search:
-    what a certificate states against the time that it takes
-    """
-
-    share: float = 0.5
-    nodes: int = 2_000
-    times: int = 10
-
-
-def proved_by_tangents(
-    problem: Problem, result: MaxMinResult, budget: Budget, params: TangentProofParams | None = None
-) -> MaxMinResult:
-    """Prove the upper end of a result by tangents, covers and marginal gains alone, as certificates state proofs.
-
-    Neither inequalities of single targets nor the spacing of values are part of such a proof. The result itself if its
-    proof is such a one. Otherwise plans are searched again, from the one found. If a limit ends that search, the upper
-    end is the one proved by then, which may be larger.
-    """
-    proof = result.proof
-    if proof is None or (proof.spacing is None and not any(cut.lemmas for cut in proof.cuts)):
-        return result
-    params = TangentProofParams() if params is None else params
-    part = budget.part(params.share, max_nodes=max(params.nodes, params.times * result.nodes))
-    searched = with_unit_prior(measured_coordinates(problem))
-    gap = max((result.upper - result.lower) / abs(result.upper), ROUNDING) if result.upper else ROUNDING
-    found = solve_in_coordinates(searched, part, gap, start=result.elements, by_rows=False).widen_by_rounding(searched)
-    lifted = searched.lifted(found)
-    return replace(result, upper=max(lifted.upper, result.lower), proof=lifted.proof)
 
 
 def _plan_of(problem: Problem, start: ArrayLike | Plan | MaxMinResult | None) -> IntArray | None:

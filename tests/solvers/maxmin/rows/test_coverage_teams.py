@@ -12,7 +12,8 @@ from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
-from ratt_opt.solvers.maxmin.solve import proved_by_tangents, solve_in_coordinates
+from ratt_opt.solvers.maxmin.solve import solve_in_coordinates
+from ratt_opt.solvers.maxmin.tangent_proofs import proved_by_tangents
 from tests.solvers.maxmin.proofs import proved_upper
 
 if TYPE_CHECKING:
