@@ -209,15 +209,15 @@ def hulls_of(task: Task, params: RowParams, information: FloatArray, first: IntA
     ``information`` : (E, M, d, d) positive semidefinite; ``first`` : (E,) the element that a search takes for each
     """
     objective, error = task.objective, params.value_errors * task.problem.evaluation_error
-    known = isinstance(objective, LogDetObjective) or (
-        type(objective) is TraceObjective and objective.dimension <= PLANE
+    is_known = isinstance(objective, LogDetObjective) or (
+        isinstance(objective, TraceObjective) and objective.dimension <= PLANE and objective.compiled_code is not None
     )
     hulls: list[TargetHull | None] = []
     for j in range(objective.n_targets):
         own = np.flatnonzero(information[:, j].any(axis=(-2, -1)) & (first == np.arange(objective.n)))
         own = own[np.argsort(task.problem.robot[own], kind="stable")]
         robots = task.problem.robot[own]
-        if not known or not np.isfinite(error) or not len(own) or len(np.unique(robots)) > MOST_ROBOTS:
+        if not is_known or not np.isfinite(error) or not len(own) or len(np.unique(robots)) > MOST_ROBOTS:
             hulls.append(None)
         else:
             hulls.append(TargetHull(objective.of_target(j), (own, robots), information[own, j], error, params))

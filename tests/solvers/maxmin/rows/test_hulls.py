@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -114,3 +115,10 @@ def test_a_search_that_is_cut_off_claims_nothing() -> None:
 
 def test_a_trace_in_space_has_no_hulls() -> None:
     assert drawn_hulls(drawn_team(np.random.default_rng(6), TraceObjective, 3)) == [None] * TARGETS
+
+
+def test_a_trace_of_outputs_has_none() -> None:
+    task = drawn_team(np.random.default_rng(7), TraceObjective, 2)
+    f = task.objective
+    part = TraceObjective(f.prior, f.information, output=np.ones((1, 2)))
+    assert drawn_hulls(Task.of(replace(task.problem, objective=part))) == [None] * TARGETS
