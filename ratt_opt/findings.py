@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
+from ratt_opt.certificates.certification import CutsCertification
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.certificates.certification import Certification
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.graph.largest_group.counting import LargestGroup
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.base import SetFunction
     from ratt_opt.solvers.result import MaxMinResult
@@ -56,6 +59,7 @@ class Findings:
     problem: Problem
     alpha_cs: int
     n_max_upper: int | None = None
+    largest_group: LargestGroup | None = None
     ratt: AssessedPlan
     baselines: tuple[AssessedPlan, ...]
     optimum: MaxMinResult
@@ -66,6 +70,7 @@ class Findings:
     inapplicable: Mapping[str, str]
     omitted: Mapping[str, str] = field(default_factory=dict)
     certificate: Certification
+    cuts_certificate: CutsCertification = field(default_factory=CutsCertification)
     seconds: Mapping[str, float]
     created: str = ""
     source: object = None

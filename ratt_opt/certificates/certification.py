@@ -8,13 +8,25 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ratt_opt.certificates.verifier.edge_cuts import VerifiedCuts
     from ratt_opt.certificates.verifier.verified import Verified
     from ratt_opt.errors import ProofError
 
-__all__ = ["CERTIFICATE", "INTERRUPTED", "NOT_ASKED_FOR", "PENDING", "Certificate", "Certification"]
+__all__ = [
+    "CERTIFICATE",
+    "CUTS",
+    "INTERRUPTED",
+    "NOT_ASKED_FOR",
+    "PENDING",
+    "Certificate",
+    "Certification",
+    "CutsCertification",
+]
 
 CERTIFICATE = "certificate.json"
 """Name of a certificate in a report's folder."""
+CUTS = "cuts.json"
+"""Name of the certificate of the smallest largest group there."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,6 +61,15 @@ class Certification:
     def faulty(cls, fault: ProofError) -> Certification:
         """Our own proof has a fault: the verifier named the first one."""
         return cls(why_not=f"the proof has a fault: {fault}", final=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CutsCertification:
+    """Certificate that no cut of the links leaves groups smaller than the smallest largest one, or ``why_not``."""
+
+    path: Path | None = None
+    verified: VerifiedCuts | None = None
+    why_not: str = "not asked for"
 
 
 NOT_ASKED_FOR = Certification(why_not="not asked for")

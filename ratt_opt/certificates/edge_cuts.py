@@ -9,63 +9,74 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._files import write_atomically
-from ratt_opt.attack.edge_cuts.cut_search import CutSearch
-from ratt_opt.attack.edge_cuts.fewest import cut_network, size_in_steps
-from ratt_opt.attack.edge_cuts.kept_links import proof_tree
+from ratt_opt.attack.edge_cuts.cut_search import CutSearch, SearchParams
+from ratt_opt.attack.edge_cuts.elimination import Elimination, TooManyStates
+from ratt_opt.attack.edge_cuts.fewest import FewestCuts, cut_network, size_in_steps
+from ratt_opt.attack.edge_cuts.kept_links import groups_above, proof_tree
+from ratt_opt.attack.edge_cuts.listed import partition_that_keeps
 from ratt_opt.budget import Budget, OutOfBudget
+from ratt_opt.certificates.certification import CutsCertification
+from ratt_opt.certificates.verifier.cut_proofs import most_links_inside
 from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, VerifiedCuts, verify_cuts
-from ratt_opt.errors import ProofError
+from ratt_opt.errors import InputError, ProofError, UndecidedError
+from ratt_opt.graph.largest_group.counting import LargestGroup
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from fractions import Fraction
     from pathlib import Path
 
     import networkx as nx
 
     from ratt_opt._validation import IntArray
-    from ratt_opt.attack.edge_cuts.fewest import FewestCuts
     from ratt_opt.attack.edge_cuts.network import CutNetwork
     from ratt_opt.graph.communication import CommunicationGraph, Link
+    from ratt_opt.graph.threat import Threat
 
-__all__ = ["certify_cuts"]
+__all__ = ["certify_cuts", "certify_size_if_possible"]
 
+LEAST_CHECKED = 1.0
+"""Seconds in which a proof is verified if its writing has taken all."""
 MOST_NUMBERS = 1_800_000
 """Numbers of a tree at most; the verifier refuses longer files."""
 
 
 def certify_cuts(
     graph: nx.Graph | CommunicationGraph,
-    found: FewestCuts,
+    found: FewestCuts | LargestGroup,
     path: str | Path,
     *,
     weights: Mapping[Link, float] | str | None = None,
     sizes: Mapping[int, float] | Sequence[float] | str | None = None,
     protected_links: Iterable[Link] = (),
     time_limit: float | None = None,
+    budget: Budget | None = None,
 ) -> VerifiedCuts:
-    """Write the proof of what :func:`fewest_cuts` found by prices, ``found.by_prices``, once it is verified.
+    """Write the proof of the lower end that :func:`fewest_cuts` or :func:`smallest_largest_group` found, verified.
 
-    If it found its answer without prices, these are searched first.
+    Of a smallest largest group: more than ``found.alpha_c`` links must be cut for groups that are smaller by one. A
+    proof counts links, has prices of robots, or lists the groups that prices leave, or eliminates robots one by one. If
+    none of these proves the lower end in time, what prices prove is written.
 
     ``graph``, ``weights``, ``sizes``, ``protected_links`` : as for :func:`fewest_cuts`
+    ``time_limit``, ``budget`` : seconds for writing and for verifying; an outer search's budget
 
     Raises
     ------
     InputError : as :func:`fewest_cuts`.
-    ProofError : no prices are proved, or the tree is too long for a file or does not end in time.
+    ProofError : nothing is proved, or a proof is too long for a file or does not end in time.
     """
-    together = list(protected_links)
+    together, own = list(protected_links), Budget.inside(budget, time_limit)
+    if isinstance(found, LargestGroup) and (weights, sizes) != (None, None):
+        raise InputError("weights", "and sizes must be absent for a smallest largest group", "given")
     network = cut_network(graph, weights, sizes, together)
-    room, budget = size_in_steps(network, found.size), Budget(time_limit)
-    prices = _prices(network, found, room, budget)
+    writer = _Writer(network, _room(network, found), own)
     try:
-        tree = proof_tree(network, prices, room, MOST_NUMBERS, budget)
+        proof = writer.of_size(found) if isinstance(found, LargestGroup) else writer.of_cuts(found)
     except OutOfBudget as out:
-        raise ProofError(f"the tree that proves the prices does not end in {time_limit} s") from out
-    if tree is None:
-        raise ProofError(f"the tree that proves the prices has more than {MOST_NUMBERS:,} numbers")
-    links = sorted(network.links)
+        raise ProofError(f"the proof does not end in {own.elapsed:.3g} s") from out
     joined = sorted({(min(link), max(link)) for link in together})
+    links = sorted(network.links)
     document: dict[str, Any] = {
         "format": CUTS_FORMAT,
         "version": 1,
@@ -78,34 +89,150 @@ def certify_cuts(
             "scale": network.scale,
             "size_scale": network.size_scale,
         },
-        "size": room,
-        "claim": max(network.total - int(prices.sum()) // network.unit, 0),
-        "unit": network.unit,
-        "prices": prices.tolist(),
-        "tree": list(_nodes(tree)),
+        "size": writer.room,
+        **proof,
     }
-    verified = verify_cuts(document)
+    verified = verify_cuts(document, time_limit=max(own.seconds_left, LEAST_CHECKED))
     text = json.dumps(document, separators=(",", ":")) + "\n"
     write_atomically(path, lambda file: file.write_text(text, encoding="utf-8"))
     return verified
 
 
-def _prices(network: CutNetwork, found: FewestCuts, room: int, budget: Budget) -> IntArray:
-    """(n,) prices of nodes that were found, or that are now.
+def certify_size_if_possible(
+    threat: Threat, found: LargestGroup | None, path: Path, budget: Budget
+) -> CutsCertification:
+    """:func:`certify_cuts` for the smallest largest group that a threat leaves, or why there is no certificate."""
+    if found is None:
+        return CutsCertification(why_not="the smallest largest group was not searched")
+    together = threat.protected_links
+    try:
+        verified = certify_cuts(threat.graph, found, path, protected_links=together, budget=budget)
+    except (InputError, ProofError, UndecidedError, MemoryError) as error:
+        reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
+        return CutsCertification(why_not=reason)
+    return CutsCertification(path=path, verified=verified)
 
-    Raises ``ProofError`` : none are proved.
+
+def _room(network: CutNetwork, found: FewestCuts | LargestGroup) -> int:
+    """Size of groups in steps of sizes, for which the lower end says that much must be cut.
+
+    Raises ``ProofError`` : no partition has groups that small.
     """
-    if found.prices is not None:
-        own = [found.prices[robots[0]] * network.unit * network.scale for robots in network.members]
+    if isinstance(found, FewestCuts):
+        return size_in_steps(network, found.size)
+    if found.lower <= int(network.size.max()):
+        why = "no group has less than one robot" if found.lower <= 1 else "protected links join that many robots"
+        raise ProofError(f"there is nothing to prove: {why}")
+    return found.lower - 1
+
+
+class _Writer:
+    """Proofs that links must be cut for groups of at most ``room``."""
+
+    def __init__(self, network: CutNetwork, room: int, budget: Budget) -> None:
+        self.network, self.room, self._budget = network, room, budget
+
+    def of_cuts(self, found: FewestCuts) -> dict[str, Any]:
+        """A proof of the lower end, or of what prices prove."""
+        network = self.network
+        claim = round(found.lower * network.scale)
+        prices = None if found.prices is None else self._steps(found.prices)
+        if prices is not None and self._by_prices(prices) >= claim:
+            return self._priced(prices)
+        if proof := self._counted(claim):
+            return proof
+        if found.proved_by == "elimination":
+            return self._eliminated(claim)
+        if prices is None:
+            search = CutSearch(network, self.room, self._budget)
+            with suppress(OutOfBudget):
+                search.raise_prices()
+            prices = search.prices
+        if prices is None:
+            raise ProofError("no prices were proved: give more time")
+        if found.proved_by == "listed groups" and (proof := self._listed(prices, claim)):
+            return proof
+        return self._priced(prices)
+
+    def of_size(self, found: LargestGroup) -> dict[str, Any]:
+        """A proof that more links than ``found.alpha_c`` must be cut.
+
+        Raises ``ProofError`` : none is found.
+        """
+        network, claim = self.network, found.alpha_c + 1
+        if proof := self._counted(claim):
+            return proof
+        is_large = network.n_nodes > SearchParams().priced_first
+        if is_large and (proof := self._eliminated_if_few(claim)):
+            return proof
+        search = CutSearch(network, self.room, self._budget, target=found.alpha_c)
+        search.run()
+        if search.lower >= claim and search.prices is not None:
+            if self._by_prices(search.prices) >= claim:
+                return self._priced(search.prices)
+            if proof := self._listed(search.prices, claim):
+                return proof
+        if not is_large and (proof := self._eliminated_if_few(claim)):
+            return proof
+        raise ProofError(f"neither prices nor elimination prove it: {found.reason}")
+
+    def _steps(self, prices: Sequence[Fraction]) -> IntArray:
+        """(n,) prices of nodes in units."""
+        network = self.network
+        own = [prices[robots[0]] * network.unit * network.scale for robots in network.members]
         return np.array([int(price) for price in own], dtype=np.int64)
-    if network.total == 0:
-        return np.zeros(network.n_nodes, np.int64)
-    search = CutSearch(network, room, budget)
-    with suppress(OutOfBudget):
-        search.raise_prices()
-    if search.prices is None:
-        raise ProofError("no prices were proved: give more time")
-    return search.prices
+
+    def _by_prices(self, prices: IntArray) -> int:
+        return max(self.network.total - int(prices.sum()) // self.network.unit, 0)
+
+    def _counted(self, claim: int) -> dict[str, Any] | None:
+        """Say that groups of so few robots have few links inside, if that proves the claim."""
+        network = self.network
+        inside = most_links_inside(network.graph.n_robots, self.room // min(network.sizes))
+        lightest = sorted(network.links.values())[: max(len(network.links) - inside, 0)]
+        return {"claim": sum(lightest), "links_inside": inside} if sum(lightest) >= claim else None
+
+    def _eliminated(self, claim: int) -> dict[str, Any]:
+        return {"claim": claim, "order": Elimination(self.network).order()}
+
+    def _eliminated_if_few(self, claim: int) -> dict[str, Any] | None:
+        """An order of elimination, if it proves the claim within its limits."""
+        elimination = Elimination(self.network)
+        with suppress(TooManyStates):
+            if elimination.least_cut(self.room, claim - 1, self._budget) is None:
+                return {"claim": claim, "order": elimination.order()}
+        return None
+
+    def _priced(self, prices: IntArray) -> dict[str, Any]:
+        """Prices, and the tree that proves them.
+
+        Raises ``ProofError`` : it is too long.
+        """
+        tree = proof_tree(self.network, prices, self.room, MOST_NUMBERS, self._budget)
+        if tree is None:
+            raise ProofError(f"the tree that proves the prices has more than {MOST_NUMBERS:,} numbers")
+        return {"claim": self._by_prices(prices), **self._with_tree(prices, tree)}
+
+    def _with_tree(self, prices: IntArray, tree: IntArray) -> dict[str, Any]:
+        return {"unit": self.network.unit, "prices": prices.tolist(), "tree": list(_nodes(tree))}
+
+    def _listed(self, prices: IntArray, claim: int) -> dict[str, Any] | None:
+        """Prices, the groups within their gap, and why no partition into these cuts less; ``None`` if too many."""
+        network, need = self.network, self.network.total - claim + 1
+        room = int(prices.sum()) - network.unit * need
+        most = SearchParams().most_listed
+        groups = groups_above(network, prices, self.room, -room - 1, most, self._budget)
+        if room < 0 or not groups.is_complete:
+            return None
+        answer = partition_that_keeps(network, groups.groups, prices, need, self._budget)
+        tree = proof_tree(network, prices, self.room, MOST_NUMBERS, self._budget, -room - 1)
+        if answer.label is not None or tree is None:
+            return None
+        levels = [
+            {"prices": level.prices.tolist(), "triples": [[*triple, price] for triple, price in level.triples]}
+            for level in answer.levels
+        ]
+        return {"claim": claim, **self._with_tree(prices, tree), "levels": levels}
 
 
 def _nodes(tree: IntArray) -> Iterator[dict[str, Any]]:

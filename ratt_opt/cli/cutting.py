@@ -40,8 +40,8 @@ def cuts(
 
     Directions are dropped. An interrupt (Ctrl-C) prints the bracket so far and exits with 130.
 
-    A certificate is made of prices, which may prove less than the lower end; the output says what it proves. With
-    --cuts it is about groups that are smaller by one: more links than the cuts allow must be cut for these.
+    A certificate counts links, has prices of robots, lists groups or eliminates robots; the output says which, and what
+    it proves. With --cuts it is about groups smaller by one: more links than that must be cut for these.
     """
     from ratt_opt.attack.edge_cuts.fewest import fewest_cuts
     from ratt_opt.attack.edge_cuts.smallest import smallest_largest_group
@@ -82,18 +82,13 @@ def _certified(
 ) -> dict[str, Any]:
     """Write the certificate, and say what it proves.
 
-    Raises ``ProofError`` : no prices are proved in time, or groups of one robot are as large as any.
+    Raises ``ProofError`` : nothing is proved in time, or groups of one robot are as large as any.
     """
-    from ratt_opt.attack.edge_cuts.fewest import FewestCuts, fewest_cuts
     from ratt_opt.certificates.edge_cuts import certify_cuts
-    from ratt_opt.errors import ProofError
 
-    if not isinstance(found, FewestCuts):
-        if found.lower <= 1:
-            raise ProofError("there is nothing to prove: no group has less than one robot")
-        found = fewest_cuts(graph, found.lower - 1, time_limit=seconds)
     proved = certify_cuts(graph, found, path, time_limit=seconds, **asked)
-    return {"file": str(path), "size": found.size, "least_weight": proved.lower / proved.scale}
+    least, size = proved.lower / proved.scale, proved.size / proved.size_scale
+    return {"file": str(path), "size": size, "least_weight": least, "proof": proved.proof}
 
 
 def _weights(given: "nx.Graph", graph: "nx.Graph", name: str) -> "dict[Link, Any]":
@@ -156,5 +151,5 @@ def _lines(document: dict[str, Any], quantity: str) -> list[str]:
 def _proof_lines(proof: dict[str, Any] | None) -> list[str]:
     if proof is None:
         return []
-    weight = f"{proof['least_weight']:g}"
-    return [f"certificate {proof['file']}: at least {weight} must be cut for groups of at most {proof['size']:g}"]
+    what = f"at least {proof['least_weight']:g} must be cut for groups of at most {proof['size']:g}"
+    return [f"certificate {proof['file']}: {what}, by {proof['proof']}"]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ratt_opt.certificates.certification import CERTIFICATE, INTERRUPTED, PENDING, Certification
+from ratt_opt.certificates.certification import CERTIFICATE, CUTS, INTERRUPTED, PENDING, Certification
 from ratt_opt.cli.options import (
     GAP,
     TIME_LIMIT,
@@ -34,6 +34,8 @@ PAPER_SEED = 14
 """A scenario of the paper's kind on which the planners differ; on many others RATT and greedy find the same plan."""
 EARLIER = "certificate.earlier.json"
 """The certificate of an earlier report in the folder when a later one has none."""
+CUTS_SHARE = 0.2
+"""Share of a certificate's seconds for that of the smallest largest group."""
 NOT_DRAWN = "without plan.png and plan.svg, which the same command draws once it ends; report.html has the map"
 """Message after an interrupt: drawing takes a second or two, mostly to load the drawing library."""
 
@@ -58,7 +60,7 @@ def demo(
     from ratt_opt.scenario.limited_view import demo_scenario
 
     scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=PAPER_SEED) if paper else demo_scenario()
-    save_scenario(scenario, output_directory(out, CERTIFICATE, EARLIER, *FILES) / "scenario.json")
+    save_scenario(scenario, output_directory(out, CERTIFICATE, EARLIER, CUTS, *FILES) / "scenario.json")
     _bound(scenario, out, certificate=certificate, as_json=as_json, as_latex=as_latex)
 
 
@@ -116,7 +118,7 @@ def _bound(
     from ratt_opt.solvers.maxmin.solve import check_limits
 
     check_output(as_json=as_json, as_latex=as_latex)
-    folder = output_directory(out, CERTIFICATE, EARLIER, *FILES)
+    folder = output_directory(out, CERTIFICATE, EARLIER, CUTS, *FILES)
     check_limits(gap, time_limit)
     began = monotonic()
     searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
@@ -136,6 +138,7 @@ def _bound(
     if fault is not None:
         raise fault
     files += [proof.path] if (proof := report.certificate.certificate) else []
+    files += [cuts] if (cuts := report.cuts_certificate.path) else []
     if report.certificate.certificate is None and report.certificate.final and (folder / CERTIFICATE).exists():
         (folder / CERTIFICATE).replace(folder / EARLIER)  # it is not about this report
     if as_json:
@@ -167,21 +170,26 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "tuple
     Raises WorkInterrupted; the report in the folder then says so.
     """
     from ratt_opt.budget import Budget
+    from ratt_opt.certificates.edge_cuts import certify_size_if_possible
     from ratt_opt.certificates.write import certify_if_possible
     from ratt_opt.report.write import write_verdict
 
     began = monotonic()
     budget = Budget(time_limit)
     fault: ProofError | None = None
-    interrupted = False
+    interrupted, cuts = False, report.cuts_certificate
+    (folder / CUTS).unlink(missing_ok=True)  # of an earlier report
     try:
+        cuts = certify_size_if_possible(
+            report.problem.threat, report.largest_group, folder / CUTS, budget.part(CUTS_SHARE)
+        )
         proof = certify_if_possible(report.problem, report.optimum, folder / CERTIFICATE, budget, source=report.source)
     except ProofError as error:
         proof, fault = Certification.faulty(error), error
     except KeyboardInterrupt:
         proof, interrupted = INTERRUPTED, True
     seconds = {**report.seconds, "certificate": monotonic() - began}
-    report = replace(report.with_certificate(proof), seconds=seconds)
+    report = replace(report.with_certificate(proof), cuts_certificate=cuts, seconds=seconds)
     write_verdict(report, folder)
     if interrupted:
         raise WorkInterrupted(f"interrupted; {folder} holds the report, not yet its certificate, {NOT_DRAWN}")

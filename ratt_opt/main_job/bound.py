@@ -21,6 +21,8 @@ from ratt_opt.certificates.certification import INTERRUPTED, NOT_ASKED_FOR, Cert
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
+from ratt_opt.graph.largest_group.counting import by_caa
+from ratt_opt.graph.largest_group.spreading import TREES
 from ratt_opt.main_job.assessment import assess, recommended, views_of
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.missions.first_step import first_step, first_world
@@ -42,6 +44,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.graph.largest_group.counting import LargestGroup
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.planner_world import PlannerWorld
     from ratt_opt.solvers.result import MaxMinResult
@@ -202,10 +205,12 @@ def bound(
             sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
     with steps("certificate"):
         proof, failure = _certified(problem, optimum, certificate, whole, source)
+    largest = _largest_group(problem, problem.n_robots - alpha_cs, budget)
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
-        n_max_upper=_n_max_upper(problem, problem.n_robots - alpha_cs, budget),
+        n_max_upper=largest.upper,
+        largest_group=largest,
         ratt=robust,
         baselines=baselines,
         optimum=optimum,
@@ -359,11 +364,14 @@ def _omitted_curvatures(guarantees: str, *, k: Curvature | None, c: Curvature | 
     return omitted
 
 
-def _n_max_upper(problem: Problem, lower: int, budget: Budget) -> int | None:
-    """A size of the largest group that some cut leaves: ``lower`` itself if that is known to be the smallest."""
+def _largest_group(problem: Problem, lower: int, budget: Budget) -> LargestGroup:
+    """The smallest largest group with the cut that leaves it; RATT may have proved ``lower`` by tree inequalities."""
     if problem.threat.links_alike:
-        return lower
-    return largest_group_soon(replace(problem.threat, alpha_s=0), budget).upper
+        return by_caa(problem.threat)
+    found = largest_group_soon(replace(problem.threat, alpha_s=0), budget)
+    if found.lower >= lower:
+        return found
+    return replace(found, lower=lower, claimed_lower=lower, method="spreading", reason=TREES)
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._files import output_directory
 from ratt_opt._rounding import down, up
 from ratt_opt.budget import Budget
-from ratt_opt.certificates.certification import CERTIFICATE, NOT_ASKED_FOR, Certification
+from ratt_opt.certificates.certification import CERTIFICATE, CUTS, NOT_ASKED_FOR, Certification
+from ratt_opt.certificates.edge_cuts import certify_size_if_possible
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.errors import ProofError
 from ratt_opt.findings import AssessedPlan, Findings
@@ -82,6 +83,8 @@ class BoundReport(Findings):
     ``curvature`` is given for submodular criteria (log-det), ``total_curvature`` for the others.
     ``inapplicable`` : the guarantees that do not apply here, and why; ``omitted`` : what was left out, and why.
     ``certificate`` : the verified proof file of ``optimum``, or why there is none.
+    ``largest_group`` : the smallest largest group that link attacks leave, with the cut and the reason;
+    ``cuts_certificate`` : the verified proof file of its lower end, or why there is none.
     ``seconds`` : wall time of each step; ``created`` : when the call began (UTC, ISO 8601).
     ``source`` : the scenario or model-free input that was given, ``None`` for a problem.
     ``views`` : the recommended plan under other attacks too, for maps: its ``worst`` case; the worst found that spares
@@ -118,7 +121,8 @@ class BoundReport(Findings):
         """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
 
         ``report.json`` (all of it), ``report.html`` (to read), ``plan.csv`` (to execute), ``plan.png``, ``plan.svg``,
-        and ``certificate.json``: a copy of the report's, or, if the report has none, one that is written now.
+        and ``certificate.json``: a copy of the report's, or, if the report has none, one that is written now. Then
+        ``cuts.json`` comes with it, which proves how large a group link attacks must leave.
 
         Parameters
         ----------
@@ -132,13 +136,15 @@ class BoundReport(Findings):
         """
         if not certificate or self.certificate != NOT_ASKED_FOR:
             return write_report(self, directory)
-        path = output_directory(directory) / CERTIFICATE
+        folder, budget = output_directory(directory), Budget(time_limit)
         try:
-            proof = certify_if_possible(self.problem, self.optimum, path, Budget(time_limit), source=self.source)
+            proof = certify_if_possible(self.problem, self.optimum, folder / CERTIFICATE, budget, source=self.source)
         except ProofError as fault:
             write_report(replace(self, certificate=Certification.faulty(fault)), directory)
             raise
-        return write_report(self.with_certificate(proof), directory)
+        cuts = certify_size_if_possible(self.problem.threat, self.largest_group, folder / CUTS, budget)
+        files = write_report(replace(self.with_certificate(proof), cuts_certificate=cuts), directory)
+        return files if cuts.path is None else [*files, cuts.path]
 
     def to_latex(self) -> str:
         r"""Return the tables that ``ratt-opt bound`` prints as LaTeX, which needs ``\usepackage{booktabs}``."""

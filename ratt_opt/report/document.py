@@ -50,6 +50,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "alpha_c": problem.alpha_c,
         "n_max": report.n_max,
         "n_max_upper": report.n_max_upper,
+        "n_max_proof": _n_max_proof(report),
         "alpha_cs": report.alpha_cs,
         "ratt": _shared(report, report.ratt),
         "recommended": {"planner": report.recommended.planner, **_shared(report, report.recommended)},
@@ -194,6 +195,20 @@ def _certificate(given: Certification) -> dict[str, Any]:
         "problem_hash": found.problem_hash,
         "bytes": proof.size,
     }
+
+
+def _n_max_proof(report: Findings) -> dict[str, Any] | None:
+    """The reason for the smallest largest group, the cut that leaves it, and its certificate."""
+    found, proof = report.largest_group, report.cuts_certificate
+    if found is None:
+        return None
+    certificate: dict[str, Any] = {"file": None, "verified": False, "reason": proof.why_not}
+    if proof.path is not None and proof.verified is not None:
+        proved = proof.verified
+        certificate = {"file": proof.path.name, "verified": True, "proof": proved.proof}
+        certificate |= {"size": proved.size, "least_links": proved.lower, "network_hash": proved.network_hash}
+    cut = [list(link) for link in sorted(found.cut)]
+    return {"method": found.method, "reason": found.reason, "cut": cut, "certificate": certificate}
 
 
 def _curvature(bracket: Curvature | None) -> dict[str, Any] | None:

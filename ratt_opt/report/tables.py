@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.protection.criticality import BreakingBudget, Criticality
     from ratt_opt.attack.protection.robot_choice import BestRobots
     from ratt_opt.attack.task import AttackResult
-    from ratt_opt.certificates.certification import Certification
+    from ratt_opt.certificates.certification import Certification, CutsCertification
     from ratt_opt.findings import Findings
     from ratt_opt.problem import Attack
 
@@ -216,6 +216,7 @@ def _bracket(report: Findings) -> Table:
     most = "" if report.n_max_upper is None else f", at most {report.n_max_upper}"
     table.add_row("smallest largest group, n_max", f"{report.n_max}" if is_known else f"at least {report.n_max}{most}")
     table.add_row("equivalent sensing attacks, alpha_cs", f"{'' if is_known else 'at most '}{report.alpha_cs}")
+    table.add_row("certificate of n_max", _cuts_text(report.cuts_certificate))
     for name, bracket in (("curvature k", report.curvature), ("total curvature c", report.total_curvature)):
         if bracket is not None:
             table.add_row(f"{name} over {bracket.domain} sets", bracket_text(bracket.lower, bracket.upper))
@@ -231,6 +232,14 @@ def verdict_text(given: Certification) -> str:
     if found.lower_proved:
         return f"verified, both ends proved in {found.arithmetic}: {bracket}"
     return f"verified, upper end proved in {found.arithmetic}, lower end searched in floating point: {bracket}"
+
+
+def _cuts_text(given: CutsCertification) -> str:
+    """Say how many links must be cut for smaller groups, or why there is no certificate."""
+    if given.verified is None:
+        return f"none: {given.why_not}"
+    proved = given.verified
+    return f"verified, by {proved.proof}: at least {proved.lower} links must be cut for groups of {proved.size}"
 
 
 def _guarantees(report: Findings) -> Table:

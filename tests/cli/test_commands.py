@@ -45,7 +45,16 @@ def _strict(text: str) -> Any:
 
 def test_demo_writes_report_and_figures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["demo", "--out", str(tmp_path / "demo")]) == 0
-    written = ["certificate.json", "plan.csv", "plan.png", "plan.svg", "report.html", "report.json", "scenario.json"]
+    written = [
+        "certificate.json",
+        "cuts.json",
+        "plan.csv",
+        "plan.png",
+        "plan.svg",
+        "report.html",
+        "report.json",
+        "scenario.json",
+    ]
     assert sorted(os.listdir(tmp_path / "demo")) == written
     report = _strict((tmp_path / "demo" / "report.json").read_text())
     assert report.keys() >= REPORT_FIELDS

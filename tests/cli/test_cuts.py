@@ -95,7 +95,7 @@ def test_certificates_of_both_questions(karate, asked, tmp_path, capsys):
     words = ("--largest-group", "8", "--certificate", proof, "--json")
     document = json.loads(asked(karate / "karate.graphml", *words)[1])
     validate(document, output_schema("cuts"))
-    assert document["certificate"] == {"file": str(proof), "size": 8, "least_weight": 31}
+    assert document["certificate"] == {"file": str(proof), "size": 8, "least_weight": 31, "proof": "prices"}
     assert run(["verify", str(proof)]) == 0
     assert "weight at least 31" in capsys.readouterr().out
     code, printed, _ = asked(karate / "karate.graphml", "--cuts", "34", "--certificate", proof)

@@ -58,7 +58,14 @@ def test_a_certificate_that_cannot_be_made_is_a_reason_in_the_report(
     assert reason in found["certificate"]["reason"]
     assert (out / "certificate.json").read_bytes() == earlier
     figures = [] if code else ["plan.png", "plan.svg"]
-    assert sorted(os.listdir(out)) == ["certificate.json", "plan.csv", *figures, "report.html", "report.json"]
+    assert sorted(os.listdir(out)) == [
+        "certificate.json",
+        "cuts.json",
+        "plan.csv",
+        *figures,
+        "report.html",
+        "report.json",
+    ]
     assert verify_certificate(out / "certificate.json").lower_proved
 
 
@@ -97,7 +104,7 @@ def test_an_interrupt_while_figures_are_drawn_leaves_all_else(
     found = _report(out)
     assert (found["objective"], found["interrupted"]) == ("logdet", False)
     assert found["certificate"]["verified"] is True
-    assert sorted(os.listdir(out)) == ["certificate.json", "plan.csv", "report.html", "report.json"]
+    assert sorted(os.listdir(out)) == ["certificate.json", "cuts.json", "plan.csv", "report.html", "report.json"]
 
 
 def test_an_interrupted_report_is_written_without_drawing(

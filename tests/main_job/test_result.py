@@ -7,10 +7,13 @@ import json
 import pickle
 from dataclasses import fields, replace
 
+import jsonschema
 import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.cli import run
+from ratt_opt.report.schemas import output_schema
 from ratt_opt.report.tables import report_tables
 from ratt_opt.setfunctions.information import InformationObjective
 from tests.main_job.engine import step
@@ -137,6 +140,25 @@ def test_n_max_is_printed_as_a_number_only_where_a_cut_attains_it():
             shown = replace(report, n_max_upper=most)
             cells = [cell for table in report_tables(shown) for column in table.columns for cell in column.cells]
             assert said in cells
+
+
+def test_n_max_has_a_certificate(tmp_path, capsys):
+    """Counting proves complete graphs, prices a star; a report whose certificate is not asked for says so."""
+    for links, proof, size in ((None, "counting", 2), (((0, 1), (0, 2), (0, 3)), "prices", 2)):
+        report = ro.bound(SCENARIO.replace(links=links, alpha_c=1 if links else 3))
+        assert report.to_dict()["n_max_proof"]["certificate"]["reason"] == "not asked for"
+        files = report.save(tmp_path)
+        assert tmp_path / "cuts.json" in files
+        stated = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
+        told = stated["n_max_proof"]["certificate"]
+        assert told["file"] == "cuts.json"
+        assert (told["proof"], told["size"]) == (proof, size)
+        assert run(["verify", str(tmp_path / "cuts.json"), "--json"]) == 0
+        proved = json.loads(capsys.readouterr().out)
+        assert proved["size"] == stated["n_max"] - 1
+        assert proved["lower"] == told["least_links"] > stated["alpha_c"]
+        assert len(stated["n_max_proof"]["cut"]) <= stated["alpha_c"]
+        jsonschema.validate(stated, output_schema("report"))
 
 
 class RootOfTrace(InformationObjective):

@@ -148,7 +148,7 @@ def test_a_figure_that_fails_is_a_remark(
     assert remark in " ".join(capsys.readouterr().out.split())
     for folder in (tmp_path / "saved", tmp_path / "run"):
         files = {file.name for file in folder.iterdir()}
-        assert files == {"report.json", "report.html", "plan.csv", "certificate.json"}
+        assert files == {"report.json", "report.html", "plan.csv", "certificate.json", "cuts.json"}
         assert remark in json.loads((folder / "report.json").read_text(encoding="utf-8"))["remarks"]
         assert remark[1:] in (folder / "report.html").read_text(encoding="utf-8")
         assert ro.verify_certificate(folder / "certificate.json").lower_proved

@@ -54,6 +54,7 @@ class CutSearch:
 
     ``target`` : the search ends as soon as ``upper`` is at most, or ``lower`` above, this; unlimited by default
     ``label`` : a partition to begin with, each node by itself by default
+    ``proved_by`` : what raised ``lower`` last
     """
 
     def __init__(
@@ -71,7 +72,7 @@ class CutSearch:
         self.label = np.arange(network.n_nodes) if label is None else label
         self.upper, self.lower = network.cut_of(self.label), 0
         self.prices: IntArray | None = None
-        self.reason, self.limit = "no cut costs less than nothing", ""
+        self.reason, self.limit, self.proved_by = "no cut costs less than nothing", "", "nothing"
         self._program = KeptProgram(network)
 
     @property
@@ -142,7 +143,7 @@ class CutSearch:
             self._offer(label)
             goal = self.upper - 1
         self.lower = goal + 1
-        self.reason = elimination.reason
+        self.reason, self.proved_by = elimination.reason, "elimination"
 
     def raise_prices(self) -> None:
         """Generate columns: prices between the best proved ones and the program's, until these meet.
@@ -194,6 +195,7 @@ class CutSearch:
         if lower > self.lower or self.prices is None:
             self.lower, self.prices = max(lower, 0), prices
             self.reason = "prices of robots: every group that fits keeps at most its prices"
+            self.proved_by = "prices"
 
     def _choose_known(self) -> None:
         label = self._program.labels(self.params.integer_nodes, self.budget.seconds_left)
@@ -212,9 +214,10 @@ class CutSearch:
                 self.limit = f"more than {most:,} groups are within the gap that prices leave: too many to list"
                 return
             need = self.network.total - goal
-            label = partition_that_keeps(self.network, found.groups, self.prices, need, self.budget)
+            label = partition_that_keeps(self.network, found.groups, self.prices, need, self.budget).label
             if label is None:
                 self.lower = goal + 1
                 self.reason = f"no partition into the {len(found.groups):,} groups that prices leave cuts less"
+                self.proved_by = "listed groups"
             elif not self._offer(label):
                 raise AssertionError("a partition that holds more cuts less")

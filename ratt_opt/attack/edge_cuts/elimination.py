@@ -130,24 +130,33 @@ class Elimination:
             label[list(group)] = min(group)
         return label
 
-    def _last(self, states: _States) -> list[int] | None:
-        """Links of the best state once all nodes are eliminated, leaves of the tree of bags first."""
+    def order(self) -> list[int]:
+        """Nodes in the order in which they are eliminated."""
+        return [node for bag, above in self._upwards() for node in sorted(bag - above)]
+
+    def _upwards(self) -> Iterator[tuple[frozenset[int], frozenset[int]]]:
+        """Bags and those above them, leaves of the tree first; nothing is above the last one."""
         root = next(iter(self._bags))
         above = {bag: parent for parent, bag in nx.dfs_edges(self._bags, root)}
+        for bag in nx.dfs_postorder_nodes(self._bags, root):
+            yield bag, above.get(bag, frozenset())
+
+    def _last(self, states: _States) -> list[int] | None:
+        """Links of the best state once all nodes are eliminated, leaves of the tree of bags first."""
         below: dict[frozenset[int], list[Table]] = defaultdict(list)
         links = {(i, j): k for k, (i, j) in enumerate(self._network.ends.tolist())}
-        for bag in nx.dfs_postorder_nodes(self._bags, root):
+        for bag, above in self._upwards():
             inside = [link for link in combinations(sorted(bag), 2) if link in links]
             parts = [states.of_link(links.pop(link), *link) for link in inside] + below.pop(bag, [])
             table: Table = {tuple(1 << i for i in sorted(bag)): states.nothing(len(bag))}
             for part in sorted(parts, key=lambda one: sum(map(len, one.values()))):
                 table = states.join(table, part)
-            table = states.forget(table, mask_of(bag - above.get(bag, frozenset())))
+            table = states.forget(table, mask_of(bag - above))
             if not table:
                 return None
-            if bag == root:
+            if not above:
                 return states.links_of(int(table[()][0, 1]))
-            below[above[bag]].append(table)
+            below[above].append(table)
         raise AssertionError("the root is the last bag")
 
 

@@ -35,6 +35,7 @@ class FewestCuts:
     ``prices`` : (N,) of robots, or ``None``. A connected group of at most ``size`` keeps links of at most the sum of
     its prices, so at least the weight of all links less the sum of all prices is cut: :attr:`by_prices`
     ``reason`` : why ``lower`` holds, and which limit was met if it is not exact
+    ``proved_by`` : ``"prices"``, ``"listed groups"``, ``"elimination"``, or ``"nothing"`` if ``lower`` is 0
     ``notes`` : what a user should know of the network
     ``nodes`` : of all searches
     """
@@ -46,6 +47,7 @@ class FewestCuts:
     groups: tuple[frozenset[int], ...]
     stop: Stop
     reason: str
+    proved_by: str
     prices: tuple[Fraction, ...] | None
     by_prices: int | float
     notes: tuple[str, ...]
@@ -205,6 +207,7 @@ def cut_result(network: CutNetwork, search: CutSearch, stop: Stop, size: float) 
         groups=tuple(sorted(groups, key=lambda group: (-len(group), min(group)))),
         stop=stop,
         reason="; ".join(filter(None, [search.reason, "" if stop is Stop.CLOSED else search.limit])),
+        proved_by=search.proved_by,
         prices=prices,
         by_prices=weight[2],
         notes=notes,

@@ -143,15 +143,21 @@ def groups_above(  # noqa: PLR0917
     raise AssertionError("a search ends with its groups")
 
 
-def proof_tree(network: CutNetwork, prices: IntArray, room: int, most_length: int, budget: Budget) -> IntArray | None:
-    """The tree of the search that finds no group above its prices, as integers; ``None`` if it is longer than that.
+def proof_tree(  # noqa: PLR0917
+    network: CutNetwork, prices: IntArray, room: int, most_length: int, budget: Budget, threshold: int = 0
+) -> IntArray | None:
+    """The tree of the search for groups above their prices and ``threshold``, as integers; ``None`` if it is longer.
+
+    With threshold 0 there must be none; with a lower one each has a leaf of its own.
 
     Raises
     ------
     OutOfBudget : the budget is spent.
     """
-    search = _Search(network, prices, room, 0, 1, most_length)
+    most_found = PARAMS.listed_at_once if threshold < 0 else 1
+    search = _Search(network, prices, room, threshold, most_found, most_length)
+    search.record.listing = int(threshold < 0)
     for groups, is_complete in search.run(budget):
-        if len(groups) or not is_complete or search.record.length > most_length:
+        if (threshold == 0 and (len(groups) or not is_complete)) or search.record.length > most_length:
             return None
     return search.tree[: search.record.length].copy()

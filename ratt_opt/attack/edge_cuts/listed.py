@@ -26,9 +26,25 @@ if TYPE_CHECKING:
     from ratt_opt.attack.edge_cuts.network import CutNetwork
     from ratt_opt.budget import Budget
 
-__all__ = ["partition_that_keeps"]
+__all__ = ["Level", "ListedAnswer", "partition_that_keeps"]
 
 Triple = tuple[int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Level:
+    """``prices`` (n,) of robots and of ``triples``, in units, that hold for the groups which earlier levels leave."""
+
+    prices: IntArray
+    triples: tuple[tuple[Triple, int], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ListedAnswer:
+    """``label`` (n,) of a partition that keeps enough; or ``None``, and the ``levels`` that rule groups out."""
+
+    label: IntArray | None
+    levels: tuple[Level, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,8 +73,8 @@ class _Left:
 
 def partition_that_keeps(
     network: CutNetwork, groups: BoolArray, prices: IntArray, need: int, budget: Budget
-) -> IntArray | None:
-    """(n,) labels of a partition into some of ``groups`` (k, n) that holds at least ``need``; ``None``: there is none.
+) -> ListedAnswer:
+    """Look for a partition into some of ``groups`` (k, n) that holds at least ``need``.
 
     ``prices`` : (n,) in units, at least what each group keeps
 
@@ -69,25 +85,28 @@ def partition_that_keeps(
     kept = network.kept(groups) * network.unit
     room = int(prices.sum()) - need * network.unit
     left, triples = _Left(groups, groups @ prices - kept, room), list[Triple]()
+    levels = [Level(prices, ())]
     while len(left.groups) > PARAMS.few and left.room >= 0:
         budget.check()
         program = _TripleProgram(network, left.groups, triples)
         shares = program.solve(budget.seconds_left)
         if shares is None:
             break  # HiGHS has nothing to say; what is known stays true
-        left = _fewer(left, program, need)
+        before, left = left, _fewer(left, program, need)
+        if left.room < before.room or len(left.groups) < len(before.groups):
+            levels.append(program.level())
         fresh = [t for t in _violated(program.groups, shares) if t not in set(triples)][: PARAMS.at_once]
         if not fresh:
             break
         triples += fresh
-    return _cover(network, left, need, budget)
+    return ListedAnswer(_cover(network, left, need, budget), tuple(levels))
 
 
 class _TripleProgram:
     """Prices of robots and triples over some groups, as integers once it is solved."""
 
     def __init__(self, network: CutNetwork, groups: BoolArray, triples: list[Triple]) -> None:
-        self._unit, self.groups = network.unit, groups
+        self._unit, self.groups, self._triples = network.unit, groups, tuple(triples)
         held = [groups[:, list(triple)].sum(axis=1) >= 2 for triple in triples]
         self._paid = np.hstack([groups, np.array(held, dtype=np.bool_).reshape(len(triples), len(groups)).T])
         self.kept = network.kept(groups)
@@ -104,6 +123,12 @@ class _TripleProgram:
         for row in np.flatnonzero(self.slack() < 0):  # by HiGHS's tolerance
             self.prices[self._paid[row].argmax()] += max(-int(self.slack()[row]), 0)
         return np.abs(claimed.duals)
+
+    def level(self) -> Level:
+        """The prices as a level of a proof."""
+        n = len(self.prices) - len(self._triples)
+        priced = zip(self._triples, self.prices[n:].tolist(), strict=True)
+        return Level(self.prices[:n].copy(), tuple((triple, price) for triple, price in priced if price))
 
     def slack(self) -> IntArray:
         """(k,) what the prices of each group are above what it keeps, in units."""

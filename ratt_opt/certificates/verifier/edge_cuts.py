@@ -18,6 +18,10 @@ robots inside reach through free ones. For any division of links between free ro
 where a link to a robot inside gives the free one all its weight: what S has beyond ``base`` is given to its free
 robots, and their sizes add up to at most ``room``. A leaf must bring the right side to at most 0. It lists the parts of
 links, as the link's first end gets them, that changed since the last leaf.
+
+If prices prove less than the claim, the tree may list groups: those that a partition which cuts less can have. Then the
+right side of a leaf is so far below 0 that none of its groups is one, or the leaf has a single group, which is listed.
+``cut_proofs.py`` has what follows from a list, and the other proofs: by elimination, and by counting links.
 """
 
 from __future__ import annotations
@@ -25,7 +29,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.certificates.verifier.reading import CUTS_FORMAT, array, document_hash, fields, index, need, walk
+from ratt_opt.certificates.verifier.cut_proofs import LARGEST, cannot_cut_less, check_levels, most_links_inside
+from ratt_opt.certificates.verifier.reading import (
+    CUTS_FORMAT,
+    array,
+    check_size,
+    document_hash,
+    fields,
+    index,
+    need,
+    walk,
+)
 from ratt_opt.certificates.verifier.work import SECONDS, limited, tick
 
 if TYPE_CHECKING:
@@ -33,8 +47,15 @@ if TYPE_CHECKING:
 
 __all__ = ["CUTS_FORMAT", "VerifiedCuts", "verify_cuts"]
 
-LARGEST = 2**62
-"""Largest integer that a file may state."""
+STATED = "format version network size claim"
+PROOFS = {
+    "prices": "unit prices tree",
+    "listed groups": "unit prices tree levels",
+    "elimination": "order",
+    "counting": "links_inside",
+}
+"""Fields of each kind of proof."""
+MOST_LISTED = 300_000
 GroupCase = tuple[frozenset[int], frozenset[int]]
 
 
@@ -49,6 +70,7 @@ class VerifiedCuts:
     n_robots: int
     n_links: int
     n_protected: int
+    proof: str
     leaves: int
     network_hash: str
 
@@ -60,7 +82,7 @@ class VerifiedCuts:
             f"network: {self.n_robots} robots, {self.n_links} links, {self.n_protected} of them protected; "
             f"SHA-256 of its data {self.network_hash}",
             f"proved in integers: links of weight at least {weight} must be cut so that no group has more than {size} "
-            f"({self.leaves} leaves)",
+            f"(by {self.proof}{f', {self.leaves} leaves' if self.leaves else ''})",
             "not covered: whether the data describe the real network",
         ]
 
@@ -79,15 +101,11 @@ def verify_cuts(document: dict[str, Any], *, time_limit: float = SECONDS) -> Ver
 
 
 def _decide(document: dict[str, Any]) -> VerifiedCuts:
-    names = "format version network size claim unit prices tree"
-    _, _, network, size, claim, unit, prices, tree = fields("", document, names)
-    about = _Network(network, index("size", size, LARGEST))
-    about.unit = 1 + index("unit less 1", unit - 1 if type(unit) is int else unit, LARGEST)
-    about.prices = [index("price", price, LARGEST) for price in array("prices", prices, about.robots)]
-    leaves = walk("cuts", tree, (frozenset[int](), frozenset[int]()), about.expand)
-    inside = sum(about.prices) // about.unit
+    proof = next((name for name, own in PROOFS.items() if set(document) == {*STATED.split(), *own.split()}), "prices")
+    _, _, network, size, claim, *own = fields("", document, f"{STATED} {PROOFS[proof]}")
     lower = index("claim", claim, LARGEST)
-    need(sum(about.weights) - inside >= lower, "claim: prices prove less")
+    about = _Network(network, index("size", size, LARGEST))
+    leaves = about.check(proof, lower, own)
     return VerifiedCuts(
         lower=lower,
         scale=about.scale,
@@ -96,6 +114,7 @@ def _decide(document: dict[str, Any]) -> VerifiedCuts:
         n_robots=about.stated_robots,
         n_links=about.stated_links,
         n_protected=about.protected_links,
+        proof=proof,
         leaves=leaves,
         network_hash=document_hash(network),
     )
@@ -138,6 +157,7 @@ class _Network:
         joined = _pairs("protected links", protected, self.stated_robots)
         need(set(joined) <= set(given), "network: a protected link is no link")
         self.stated_links, self.protected_links = len(given), len(joined)
+        self.stated_weights, self.least_size = each, min(own, default=1)
         node = _joined(self.stated_robots, joined)
         self.robots = 1 + max(node, default=-1)
         self.sizes = [0] * self.robots
@@ -160,6 +180,55 @@ class _Network:
             self.near[j].append(i)
         self.parts = [0] * len(self.links)
         self.unit, self.prices = 1, [0] * self.robots
+        self.weight_of = between
+        self.gap = -1  # room for the slack of groups that are listed; -1: none are
+        self.needed: int | None = None
+        self.listed: list[frozenset[int]] = []
+
+    def check(self, proof: str, claim: int, own: list[Any]) -> int:
+        """Check a proof of one kind by its own fields; return the leaves of its tree."""
+        if proof == "prices":
+            return self._check_prices(claim, *own)
+        if proof == "listed groups":
+            return self._check_list(claim, *own)
+        return self._check_elimination(claim, *own) if proof == "elimination" else self._check_counting(claim, *own)
+
+    def _check_prices(self, claim: int, unit: object, prices: object, tree: object) -> int:
+        """Check a proof by prices; return the leaves of its tree."""
+        leaves = self._walk(unit, prices, tree)
+        need(sum(self.weights) - sum(self.prices) // self.unit >= claim, "claim: prices prove less")
+        return leaves
+
+    def _check_list(self, claim: int, unit: object, prices: object, tree: object, levels: object) -> int:
+        """Check that the tree lists all groups of a partition which cuts less than the claim, and that none is left."""
+        need(claim > 0, "claim: less than nothing cannot be cut")
+        self.needed = sum(self.weights) - claim + 1
+        leaves = self._walk(unit, prices, tree)
+        check_levels(self.listed, levels, self.unit * self.needed, self._kept, self.robots)
+        return leaves
+
+    def _check_elimination(self, claim: int, order: object) -> int:
+        """Check a proof by elimination of robots in an order; it has no leaves."""
+        places = [index("robot in order", one, self.robots) for one in array("order", order, self.robots)]
+        need(len(set(places)) == self.robots, "order: a robot is named twice")
+        proved = cannot_cut_less(places, self.sizes, self.links, self.weights, self.size, claim)
+        need(proved, "elimination: less weight is enough")
+        return 0
+
+    def _check_counting(self, claim: int, inside: object) -> int:
+        """Check a proof by the number of links that groups of so few robots can have; it has no leaves."""
+        most = most_links_inside(self.stated_robots, self.size // self.least_size)
+        need(index("links inside", inside, LARGEST) == most, "links inside: not the most that groups can have")
+        lightest = sorted(self.stated_weights)[: max(len(self.stated_weights) - most, 0)]
+        need(sum(lightest) >= claim, "claim: counting proves less")
+        return 0
+
+    def _walk(self, unit: object, prices: object, tree: object) -> int:
+        self.unit = 1 + index("unit less 1", unit - 1 if type(unit) is int else unit, LARGEST)
+        self.prices = [index("price", price, LARGEST) for price in array("prices", prices, self.robots)]
+        if self.needed is not None:
+            self.gap = max(sum(self.prices) - self.unit * self.needed, -1)
+        return walk("cuts", tree, (frozenset[int](), frozenset[int]()), self.expand)
 
     def expand(self, node: object, case: GroupCase) -> Iterator[GroupCase]:
         """The cases of a split, the robot inside first; none of a leaf that closes its case."""
@@ -172,7 +241,7 @@ class _Network:
             return
         multiplier, changed = fields("leaf", node, "multiplier parts")
         self._change(array("parts", changed))
-        need(self._bound(index("multiplier", multiplier, LARGEST), inside, outside) <= 0, "cuts proof: a leaf is open")
+        self._close(index("multiplier", multiplier, LARGEST), inside, outside)
 
     def _change(self, changed: list[Any]) -> None:
         need(len(changed) % 2 == 0, "cuts proof: a part of a link is missing")
@@ -180,12 +249,26 @@ class _Network:
             place = index("link of a part", link, len(self.links))
             self.parts[place] = index("part", part, self.unit * self.weights[place] + 1)
 
-    def _bound(self, multiplier: int, inside: frozenset[int], outside: frozenset[int]) -> int:
-        """The right side above; at most 0 if the robots inside do not fit, for then the case has no group."""
+    def _close(self, multiplier: int, inside: frozenset[int], outside: frozenset[int]) -> None:
+        """Check that a case has no group that fits, or none beyond the bound, or a single one to list."""
         room = self.size - sum(self.sizes[i] for i in inside)
-        if room < 0:
-            return 0
-        free = self._free(inside, outside, room)
+        free = self._free(inside, outside, room) if room >= 0 else set[int]()
+        if room < 0 or not (inside or free):
+            return
+        bound = self._bound(multiplier, room, inside, free)
+        if not free and self.gap >= 0 and -self.gap <= bound <= 0:
+            self.listed.append(inside)
+            check_size("list of groups", len(self.listed), MOST_LISTED)
+            return
+        need(bound <= -1 - self.gap, "cuts proof: a leaf is open")
+
+    def _kept(self, group: frozenset[int]) -> int:
+        """Weight of the links inside a group, in units of prices."""
+        near = sum(self.weight_of[min(i, j), max(i, j)] for i in group for j in self.near[i] if j in group)
+        return near // 2 * self.unit
+
+    def _bound(self, multiplier: int, room: int, inside: frozenset[int], free: set[int]) -> int:
+        """The right side above."""
         bound = multiplier * room - sum(self.prices[i] for i in inside)
         given = dict.fromkeys(free, 0)
         for place, (i, j) in enumerate(self.links):

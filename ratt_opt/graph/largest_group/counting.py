@@ -36,6 +36,8 @@ __all__ = [
 class LargestGroup:
     """Claim: ``lower <= n_max``, and ``cut`` leaves a largest group of ``upper`` robots, so ``n_max <= upper``.
 
+    ``alpha_c`` : most links that may be cut
+
     ``upper`` is recomputed on the graph. ``reason`` says why ``lower`` holds, and which limit was met, ``stop`` why the
     search ended. ``claimed_lower`` is what the integer program of ``method="milp"`` claims beyond ``lower``; nothing
     has checked it, and nothing else follows from it (equal to ``lower`` for all other methods).
@@ -43,6 +45,7 @@ class LargestGroup:
 
     lower: int
     upper: int
+    alpha_c: int
     cut: frozenset[Link]
     method: str
     reason: str
@@ -91,6 +94,7 @@ def split_result(
     return LargestGroup(
         lower=lower,
         upper=upper,
+        alpha_c=threat.alpha_c,
         cut=cut,
         method=method,
         reason=reason,

@@ -101,16 +101,29 @@ static void send_to(KeptSearch *s, int origin, int goal) {
     s->excess[origin] -= amount, s->excess[goal] += amount;
 }
 
-/* Divide links so that the least excess is left: the sum of what is left. Marks `stamp` on the best set of free robots. */
-static int64_t balance(KeptSearch *s, const uint8_t *state) {
-    int robots = (int)s->q->robots, tail = 0, goal;
+/* Divide links until at most `enough` excess is left, or the least: the sum of what is left. */
+static int64_t even_out(KeptSearch *s, const uint8_t *state, int64_t enough) {
+    int robots = (int)s->q->robots, goal;
     int64_t left = 0;
     s->dead = ++s->stamp;
     for (int i = 0; i < robots; i++)
-        while (state[i] == FREE && s->excess[i] > 0 && s->mark[i] != s->dead && (goal = path_from(s, state, i)) >= 0) send_to(s, i, goal);
-    s->stamp++;
+        if (state[i] == FREE && s->excess[i] > 0) left += s->excess[i];
     for (int i = 0; i < robots; i++)
-        if (state[i] == FREE && s->excess[i] > 0) left += s->excess[i], s->mark[i] = s->stamp, s->queue[tail++] = i;
+        while (left > enough && state[i] == FREE && s->excess[i] > 0 && s->mark[i] != s->dead && (goal = path_from(s, state, i)) >= 0) {
+            int64_t before = s->excess[i];
+            send_to(s, i, goal);
+            left -= before - s->excess[i];
+        }
+    return left;
+}
+
+/* Divide links so that the least excess is left. Marks `stamp` on the best set of free robots. */
+static int64_t balance(KeptSearch *s, const uint8_t *state) {
+    int64_t left = even_out(s, state, 0);
+    int tail = 0;
+    s->stamp++;
+    for (int i = 0; i < s->q->robots; i++)
+        if (state[i] == FREE && s->excess[i] > 0) s->mark[i] = s->stamp, s->queue[tail++] = i;
     reach(s, state, tail, s->stamp, 1);
     return left;
 }
@@ -120,15 +133,28 @@ static void write_number(KeptLinks *q, int64_t number) {
     q->length++;
 }
 
-/* Write a leaf: the multiplier, and the parts of links that changed since the last leaf. */
-static void write_leaf(KeptSearch *s, const uint8_t *state, int64_t multiplier) {
+static void set_excess(KeptSearch *s, const uint8_t *state, int64_t multiplier) {
+    const KeptLinks *q = s->q;
+    for (int i = 0; i < q->robots; i++) s->excess[i] = s->bonus[i] - q->price[i] - multiplier * q->size[i];
+    for (int64_t e = 0; e < q->links; e++) {
+        if (!both_free(s, state, e)) continue;
+        s->excess[q->ends[2 * e]] += s->flow[e], s->excess[q->ends[2 * e + 1]] += q->weight[e] - s->flow[e];
+    }
+}
+
+/* Write a leaf: the multiplier, and the parts of links that changed since the last leaf. These are few if the division
+   begins as the last leaf left it, and ends once it closes the case. */
+static void write_leaf(KeptSearch *s, const Node *node, int64_t multiplier) {
     KeptLinks *q = s->q;
     if (!q->most_length) return;
     int64_t changed = 0;
-    for (int64_t e = 0; e < q->links; e++) changed += both_free(s, state, e) && s->flow[e] != s->written[e];
+    memcpy(s->flow, s->written, sizeof(int64_t) * (size_t)q->links);
+    set_excess(s, node->state, multiplier);
+    even_out(s, node->state, q->threshold - node->value - multiplier * node->room);
+    for (int64_t e = 0; e < q->links; e++) changed += s->flow[e] != s->written[e];
     write_number(q, LEAF), write_number(q, multiplier), write_number(q, changed);
     for (int64_t e = 0; changed && e < q->links; e++) {
-        if (!both_free(s, state, e) || s->flow[e] == s->written[e]) continue;
+        if (s->flow[e] == s->written[e]) continue;
         write_number(q, e), write_number(q, s->flow[e]), s->written[e] = s->flow[e];
     }
 }
@@ -172,15 +198,6 @@ static void set_bonus(KeptSearch *s, const uint8_t *state) {
     }
 }
 
-static void set_excess(KeptSearch *s, const uint8_t *state, int64_t multiplier) {
-    const KeptLinks *q = s->q;
-    for (int i = 0; i < q->robots; i++) s->excess[i] = s->bonus[i] - q->price[i] - multiplier * q->size[i];
-    for (int64_t e = 0; e < q->links; e++) {
-        if (!both_free(s, state, e)) continue;
-        s->excess[q->ends[2 * e]] += s->flow[e], s->excess[q->ends[2 * e + 1]] += q->weight[e] - s->flow[e];
-    }
-}
-
 /* The line of the set of all free robots. */
 static Line all_free(const KeptSearch *s, const Node *node) {
     const KeptLinks *q = s->q;
@@ -208,7 +225,7 @@ static int bound(KeptSearch *s, Node *node, int rounds) {
         set_excess(s, node->state, whole);
         int64_t left = balance(s, node->state);
         if (node->value + whole * node->room + left <= q->threshold) {
-            write_leaf(s, node->state, whole);
+            write_leaf(s, node, whole);
             return CLOSED;
         }
         for (int i = 0; i < q->robots; i++)
@@ -250,7 +267,7 @@ static int examine(KeptSearch *s) {
     int inside;
     if (!close_off(s, node, &inside)) {
         if (inside && node->value > q->threshold && !record(s, node->state, 0, node->value)) return FULL;
-        write_leaf(s, node->state, 0);
+        write_leaf(s, node, 0);
         return CLOSED;
     }
     set_bonus(s, node->state);
