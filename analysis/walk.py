@@ -47,7 +47,7 @@ ratt-opt verify tiny/certificate.json --explain
 python "$CLONE/tests/certificates/independent_checker.py" tiny/certificate.json
 python -c "
 from ratt_audit.appendix.roles import Side
-from ratt_audit.ledger import whole_instance
+from ratt_audit.whole_lines import whole_instance
 for label in ('nd_p1d2v1_8', 'nd_p1d3v1_6', 'sub_p2d1v1_10'):
     for side in Side:
         print(label, whole_instance(label, side).whole.text())

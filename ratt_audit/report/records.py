@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ratt_audit.engine.claim import Claim
     from ratt_audit.engine.decide import BestFactor, Decision, Verdict
     from ratt_audit.engine.evidence import Proof, Witness
-    from ratt_audit.real_objectives.search import RealSearch
+    from ratt_audit.real_objectives.violations import RealSearch
     from ratt_audit.whole.replay import WholeInstance
     from ratt_audit.whole.search import Decided
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from ratt_audit import ledger
-from ratt_audit.ledger import all_entries
+from ratt_audit.entries import all_entries
 from ratt_opt.cli import run
 
 if TYPE_CHECKING:

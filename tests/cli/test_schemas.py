@@ -13,7 +13,7 @@ import jsonschema
 import pytest
 
 from ratt_audit import ledger
-from ratt_audit.ledger import all_entries
+from ratt_audit.entries import all_entries
 from ratt_opt import Problem, TableFunction, bound
 from ratt_opt.cli import run
 from ratt_opt.cli.program import ERRORS, app

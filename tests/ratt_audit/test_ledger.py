@@ -14,7 +14,8 @@ import pytest
 from ratt_audit import ledger as ledger_module
 from ratt_audit.appendix.entry import ClaimEntry, Entry
 from ratt_audit.appendix.misprints import MISPRINTS
-from ratt_audit.ledger import all_entries, decide_entry
+from ratt_audit.decisions import decide_entry
+from ratt_audit.entries import all_entries
 from ratt_audit.report.pages import html_report, markdown_report
 from ratt_opt import InputError, TableFunction, run_audit
 

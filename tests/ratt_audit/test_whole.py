@@ -11,10 +11,10 @@ from ratt_audit.appendix.entry import ClaimEntry, EntryKind, entries_of
 from ratt_audit.appendix.patterns import pattern1_chains, submodular_chains
 from ratt_audit.appendix.roles import Side
 from ratt_audit.engine.decide import Verdict, decide
-from ratt_audit.ledger import whole_instance
 from ratt_audit.whole.recorded import rechecked, recorded_lines
 from ratt_audit.whole.search import WholeSearch, decide_team, ordered_teams, smallest_instance
 from ratt_audit.whole.teams import whole_teams
+from ratt_audit.whole_lines import whole_instance
 from ratt_opt import InputError, ProofError, TableFunction, find_monotonicity_violation, find_submodularity_violation
 
 if TYPE_CHECKING:

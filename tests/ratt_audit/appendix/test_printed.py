@@ -11,7 +11,7 @@ from latex2mathml.converter import convert
 
 from ratt_audit.appendix.entry import EntryKind
 from ratt_audit.appendix.printed import Formula, printed_line
-from ratt_audit.ledger import all_entries
+from ratt_audit.entries import all_entries
 
 PAPER = Path(__file__).resolve().parents[4] / "shared" / "paper" / "ratt.tex"
 LINES = sorted({entry.label for entry in all_entries() if entry.kind is EntryKind.STEP})

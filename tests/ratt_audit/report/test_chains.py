@@ -8,7 +8,7 @@ import pytest
 
 from ratt_audit import ledger
 from ratt_audit.appendix.entry import EntryKind
-from ratt_audit.ledger import all_entries
+from ratt_audit.entries import all_entries
 from ratt_audit.report.chains import chain_lines
 from ratt_opt import run_audit
 from ratt_opt.report.palette import VERDICTS

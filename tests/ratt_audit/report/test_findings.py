@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from ratt_audit.appendix.entry import EntryName
-from ratt_audit.ledger import all_entries
+from ratt_audit.entries import all_entries
 from ratt_audit.report.findings import findings, line_outcomes
 from ratt_audit.report.pages import html_report, markdown_report
 from ratt_opt import run_audit

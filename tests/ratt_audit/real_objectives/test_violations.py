@@ -12,9 +12,9 @@ import pytest
 
 from ratt_audit.appendix.entry import ClaimEntry
 from ratt_audit.appendix.roles import Team
-from ratt_audit.ledger import all_entries
+from ratt_audit.entries import all_entries
 from ratt_audit.real_objectives.cast import Cast, ExactCriterion, Stage, is_castable
-from ratt_audit.real_objectives.search import Origin, Trial, exact_violation, search_real_objectives
+from ratt_audit.real_objectives.violations import Origin, Trial, exact_violation, search_real_objectives
 from ratt_audit.report.records import real_record
 from ratt_opt import (
     InputError,
