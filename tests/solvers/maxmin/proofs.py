@@ -79,8 +79,9 @@ def tangent(f, point, target):
     """Value and supergradient at one posterior information, from the definitions."""
     inverse = np.linalg.inv(point)
     if isinstance(f, TraceObjective):
-        traces = [np.trace(p) - np.trace(q) for p, q in zip(f.prior, inverse, strict=True)]
-        return f.weights @ traces, f.weights[:, None, None] * (inverse @ inverse)
+        values = [target_value(f, j, point[j]) for j in range(f.n_targets)]
+        shown = np.eye(point.shape[-1]) if f.output is None else np.swapaxes(f.output, -1, -2) @ f.output
+        return sum(values), f.weights[:, None, None] * (inverse @ shown @ inverse)
     if isinstance(f, LogDetObjective):
         gains = [np.linalg.slogdet(L)[1] + np.linalg.slogdet(p)[1] for L, p in zip(point, f.prior, strict=True)]
         return f.weights @ gains, f.weights[:, None, None] * inverse
