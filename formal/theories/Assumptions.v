@@ -1,5 +1,5 @@
 (** The headline theorems: what each of them assumes. *)
-From Ratt Require Import Teams Guarantees Planner Greedy GroupSize GroupSizeComplete NMax Survivors Families Approached
+From Ratt Require Import Teams Guarantees Planner Greedy GroupSize SplitTeams GroupSizeComplete NMax Survivors Families Approached
   Quadratic Criteria Logdet Submodular Covers Gains CaseTree Costs GroupProofs Positive SizeCosts SizeProofs Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
@@ -9,6 +9,10 @@ Print Assumptions ratt_submodular.
 Print Assumptions ratt_non_decreasing.
 Print Assumptions greedy_submodular.
 Print Assumptions greedy_total_curvature.
+Print Assumptions split_total_curvature.
+Print Assumptions split_submodular.
+Print Assumptions baits_submodular.
+Print Assumptions baits_total_curvature.
 Print Assumptions group_size_submodular_any.
 Print Assumptions group_size_total_curvature_any.
 Print Assumptions ratt_optimal_any.

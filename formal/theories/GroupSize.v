@@ -183,26 +183,22 @@ by rewrite eS /contributed imset_set1; apply: single_le_bar => //; apply: low.
 Qed.
 
 (** ** A bait that sees *)
-Section Baits.
-Variable alpha : nat.
-Let u := ratt t phi default alpha.
-
-Lemma bait_sees a i : i \in take alpha order -> i \notin blinded a -> worth i <= team_value t phi u a.
+Lemma best_sees u a i : is_plan t u -> worth i <= phi [set u i] -> i \notin blinded a -> worth i <= team_value t phi u a.
 Proof.
-move=> ia ib; have ui : u i = best t phi default i by rewrite ffunE ifT.
-apply: le_trans (le_team_value t phi u a i); apply: le_trans (_ : phi [set u i] <= _); first by rewrite ui.
-apply: mono; first exact: plan_feasible (ratt_plan alpha).
+move=> oku wi ib; apply: le_trans (le_team_value t phi u a i); apply: le_trans wi _.
+apply: mono; first exact: plan_feasible oku.
 by rewrite sub1set; apply: imset_f; apply: mem_sees.
 Qed.
 
-Theorem ratt_keeps_bar : (alpha_s t < alpha)%N -> bar <= worst_case t phi u.
+(** Whatever the others chose: it suffices that the first [alpha_s + 1] robots took elements of largest individual value. *)
+Theorem baits_keep_bar u : is_plan t u -> {in take (alpha_s t).+1 order, forall i, worth i <= phi [set u i]} ->
+  bar <= worst_case t phi u.
 Proof.
-move=> baits; apply: le_worst_case => a /and5P[bl _ _ safe _].
-have in_bait k : (k <= alpha_s t)%N -> (k < #|R|)%N -> nth robot0 order k \in take alpha order.
-  move=> ka kR; rewrite in_take ?mem_nth ?order_size // index_uniq ?order_uniq ?order_size //.
-  exact: leq_ltn_trans ka baits.
+move=> oku baits; apply: le_worst_case => a /and5P[bl _ _ safe _].
+have in_bait k : (k <= alpha_s t)%N -> (k < #|R|)%N -> nth robot0 order k \in take (alpha_s t).+1 order.
+  by move=> ka kR; rewrite in_take ?mem_nth ?order_size // index_uniq ?order_uniq ?order_size.
 case: (boolP (nth robot0 order place \in safe_robots t)) => [rs|/place_unprotected pE].
-  by apply: bait_sees (in_bait _ place_le place_lt) _; rewrite (disjointFl safe).
+  by apply: best_sees oku (baits _ (in_bait _ place_le place_lt)) _; rewrite (disjointFl safe).
 pose s := take (alpha_s t).+1 order.
 have us : uniq s by apply: take_uniq order_uniq.
 have szs : size s = (alpha_s t).+1 by rewrite size_takel ?order_size.
@@ -211,9 +207,41 @@ have [i is_ ib] : exists2 i, i \in s & i \notin blinded a.
   have : (size s <= #|blinded a|)%N by rewrite cardE; apply: uniq_leq_size => // x /all_b; rewrite mem_enum.
   by rewrite szs leqNgt ltnS bl.
 have ik : (index i order <= alpha_s t)%N by rewrite -ltnS; move: is_; rewrite in_take ?mem_order.
-apply: le_trans (bait_sees _ ib); last first.
-  by rewrite -(nth_index robot0 (mem_order i)); apply: in_bait => //; apply: leq_ltn_trans ik robots.
+apply: le_trans (best_sees oku (baits _ is_) ib).
 by rewrite -[X in worth X](nth_index robot0 (mem_order i)); apply: order_le; rewrite pE ik.
+Qed.
+
+(** The same for a team that planned without a centre: each component kept its own best robots as baits, so the best of
+    all are among them. *)
+Theorem baits_submodular u : is_plan t u -> {in take (alpha_s t).+1 order, forall i, worth i <= phi [set u i]} ->
+  submodular t phi -> optimum t phi <= g%:R * worst_case t phi u.
+Proof.
+move=> oku baits sub; apply: le_trans (optimum_bar_submodular sub) _.
+by apply: ler_wpmul2l (baits_keep_bar oku baits); apply: ler0n.
+Qed.
+
+Theorem baits_total_curvature u c : is_plan t u -> {in take (alpha_s t).+1 order, forall i, worth i <= phi [set u i]} ->
+  c <= 1 -> (0 < g)%N -> total_curvature_at_most t phi c ->
+  (1 - c) * optimum t phi <= (g.-1%:R + (1 - c)) * worst_case t phi u.
+Proof.
+move=> oku baits c1 g0 curv; apply: le_trans (optimum_bar_total_curvature c1 g0 curv) _.
+by apply: ler_wpmul2l (baits_keep_bar oku baits); rewrite addr_ge0 ?ler0n // subr_ge0.
+Qed.
+
+Section Baits.
+Variable alpha : nat.
+Let u := ratt t phi default alpha.
+
+Lemma bait_is_best i : i \in take alpha order -> worth i <= phi [set u i].
+Proof. by move=> ia; rewrite (_ : u i = best t phi default i) // ffunE ifT. Qed.
+
+Lemma bait_sees a i : i \in take alpha order -> i \notin blinded a -> worth i <= team_value t phi u a.
+Proof. by move=> /bait_is_best; apply: best_sees (ratt_plan alpha). Qed.
+
+Theorem ratt_keeps_bar : (alpha_s t < alpha)%N -> bar <= worst_case t phi u.
+Proof.
+move=> baits; apply: baits_keep_bar (ratt_plan alpha) _ => i.
+by rewrite in_take ?mem_order // => ia; apply: bait_is_best; rewrite in_take ?mem_order // (leq_trans ia baits).
 Qed.
 
 Theorem group_size_submodular_any : (alpha_s t < alpha)%N -> submodular t phi ->
