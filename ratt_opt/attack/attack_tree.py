@@ -8,12 +8,12 @@ node of the least bound is divided first: its bound is one on all attacks.
 
 from __future__ import annotations
 
-from heapq import heappop, heappush
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ratt_opt.budget import Stop
+from ratt_opt.search.open_nodes import OpenNodes
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -52,10 +52,8 @@ class AttackTree:
         self._sees = [robot in problem.protected_robots for robot in self._order]
         self._most_blind, self._most_cut = threat.n_blinded, problem.alpha_c
         self._count = 0
-        self._open = [_AttackNode(-np.inf, len(self._order), 0, (), ())]
-        self._deep: list[_AttackNode] = []
-        self._current: list[_AttackNode] = []
-        """The node in work, until what it is divided into is kept: whatever ends the search, none is lost."""
+        root = _AttackNode(-np.inf, len(self._order), 0, (), ())
+        self._nodes = OpenNodes([root], task.params.branching.most_open)
 
     def run(self) -> Stop:
         """Divide nodes until none is below the goal.
@@ -65,26 +63,18 @@ class AttackTree:
         OutOfBudget : time, nodes or evaluations are spent.
         """
         bracket = self.task.bracket
-        while self._current or self._deep or self._open:
-            self._take()
-            if not self._deep:
-                bracket.raise_lower(min([bracket.goal, self._current[0].bound, *[n.bound for n in self._open[:1]]]))
+        while self._nodes:
+            node = self._nodes.take()
+            if not self._nodes.is_in_depth:
+                bracket.raise_lower(min(bracket.goal, self._nodes.bound))
             if bracket.is_closed:
                 return Stop.CLOSED
-            if self._current[0].bound < bracket.goal:
+            if node.bound < bracket.goal:
                 self.task.budget.spend()
-                self._divide(self._current[0])
-            self._current.clear()
+                self._divide(node)
+            self._nodes.done()
         bracket.raise_lower(bracket.goal)
         return Stop.CLOSED
-
-    def _take(self) -> None:
-        """The next node, unless one is in work. Those in depth bound nothing: what they come from does."""
-        if not self._current and self._deep:
-            self._current.append(self._deep.pop())
-        elif not self._current:
-            self._current.append(self._open[0])
-            heappop(self._open)
 
     def _divide(self, node: _AttackNode) -> None:
         """Branch on the group of one more robot, within the budgets; if all are placed, offer the attack."""
@@ -100,14 +90,7 @@ class AttackTree:
         children = [self._child(node, g, max(node.bound, value), is_blind=False) for g, value in worth]
         if not self._sees[k] and sum(node.blind) < self._most_blind:
             children += [self._child(node, g, node.bound, is_blind=True) for g in homes]
-        is_full = bool(self._deep) or len(self._open) >= self.task.params.branching.most_open
-        for child in sorted(children, reverse=True):
-            if child.bound >= self.task.bracket.goal:
-                continue
-            if is_full:
-                self._deep.append(child)
-            else:
-                heappush(self._open, child)
+        self._nodes.keep(c for c in sorted(children, reverse=True) if c.bound < self.task.bracket.goal)
 
     def _child(self, node: _AttackNode, group: int, bound: float, *, is_blind: bool) -> _AttackNode:
         self._count += 1

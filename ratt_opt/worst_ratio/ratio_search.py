@@ -12,7 +12,6 @@ for some outcome branches on that outcome's groups. Every node's bound is proved
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -23,6 +22,7 @@ from ratt_opt.errors import ProofError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.graph.threat import Threat
+from ratt_opt.search.open_nodes import OpenNodes
 from ratt_opt.worst_ratio.program import (
     BEHIND,
     ClaimedOptimum,
@@ -149,26 +149,27 @@ class RatioSearch:
         self._hit = dict(zip(groups, self.program.add(hit), strict=True))
         self._saved = dict(zip(groups, self.program.add(kept), strict=True))
         forced = frozenset(outcome[0] for outcome in skeleton.outcomes if len(outcome) == 1)
-        self.open = [_RatioNode(floor, 0, k, attack, forced) for k, attack in enumerate(skeleton.attacks)]
-        self._seen = {(node.attack, node.saved) for node in self.open}
+        roots = [_RatioNode(floor, 0, k, attack, forced) for k, attack in enumerate(skeleton.attacks)]
+        self.open = OpenNodes(roots)
+        self._seen = {(node.attack, node.saved) for node in roots}
 
     def run(self, budget: Budget) -> None:
         """Search to the end, or until the budget is spent (``OutOfBudget``); the bracket is valid either way."""
-        while self.open and self.open[0].bound < self.upper:
-            self._expand(self.open[0], budget)
+        while self.open and self.open.bound < self.upper:
+            self._expand(self.open.take(), budget)
+            self.open.done()
 
     @property
     def lower(self) -> Fraction:
         """Proved lower bound on the ratio, at any time."""
-        waiting = self.open[0].bound if self.open else Fraction(1)
+        waiting = self.open.bound if self.open else Fraction(1)
         return max(self.floor, min(self.closed, waiting, self.upper))
 
     def _expand(self, node: _RatioNode, budget: Budget) -> None:
-        """Solve the first open node and replace it by its children."""
+        """Solve the node in hand and keep its children."""
         claimed = self._solve(node, budget)
         bound = node.bound if claimed is None else max(node.bound, proved_bound(self.program, claimed, budget))
         self.nodes += 1
-        heapq.heappop(self.open)
         if bound >= self.upper:
             return
         missed = None if claimed is None else self._missed_outcome(node, claimed)
@@ -181,8 +182,8 @@ class RatioSearch:
             # A group that contains one known to reach 1 reaches 1: only the smallest are kept.
             saved = frozenset(s for s in node.saved if s & group != group) | {group}
             if (node.attack, saved) not in self._seen:
+                self.open.keep([_RatioNode(bound, node.height - 1, len(self._seen) + 1, node.attack, saved)])
                 self._seen.add((node.attack, saved))
-                heapq.heappush(self.open, _RatioNode(bound, node.height - 1, len(self._seen), node.attack, saved))
 
     def _used(self, node: _RatioNode) -> list[int]:
         """Subsets whose values the node's program mentions, ascending."""

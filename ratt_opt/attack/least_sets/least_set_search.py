@@ -7,7 +7,6 @@ robots by reduced cost, and orders them for the search in depth, which finishes 
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -17,6 +16,7 @@ from ratt_opt.attack.least_sets.exchanges import exchanged
 from ratt_opt.attack.least_sets.sets_of_size import BoundedSets, SetFamily
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
+from ratt_opt.search.open_nodes import OpenNodes
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -116,18 +116,15 @@ class LeastSetSearch:
         self.team, self.size, self.threshold, self._in_depth = team, size, threshold, in_depth
         self._inside, self._outside = inside, outside
         root = SetNode(floor, 0, inside, outside)
-        self._open, left = [root], root.undecided(team)
+        self._nodes, left = OpenNodes([root]), root.undecided(team)
         is_wide = len(inside) < size <= len(inside) + len(left)
         self._whole: BoundedSets | None = self._sets(root, left) if is_wide else None
         self._serial, self._work = 1, self.team.params.set_search.most
-        self._in_hand: SetNode | None = None
-        """The node that is being looked at."""
 
     @property
     def lower(self) -> float:
         """No set still undecided is worth less; infinite once all are decided."""
-        first = self._open[:1] if self._in_hand is None else [self._in_hand, *self._open[:1]]
-        return min((node.bound for node in first), default=np.inf)
+        return float(self._nodes.bound)
 
     def run(self, budget: Budget) -> Iterator[frozenset[int] | None]:
         """Yield sets worth less than the threshold as they are found, and ``None`` when :attr:`lower` may have risen.
@@ -136,17 +133,11 @@ class LeastSetSearch:
         """
         if self._whole is not None:
             yield from self._search_whole(self._whole, budget)
-        while self._open and self._open[0].bound < self.threshold:
-            self._in_hand = heapq.heappop(self._open)
-            try:
-                yield from self._explore(self._in_hand, budget)
-            except BaseException:  # out of budget, interrupted, or closed: another run goes on with the node
-                heapq.heappush(self._open, self._in_hand)
-                raise
-            finally:
-                self._in_hand = None
+        while self._nodes and self._nodes.bound < self.threshold:
+            yield from self._explore(self._nodes.take(), budget)
+            self._nodes.done()
             yield None
-        self._open.clear()
+        self._nodes.clear()
 
     def _search_whole(self, sets: BoundedSets, budget: Budget) -> Found:
         """Search in depth without bounds; to the end if there are none."""
@@ -157,10 +148,10 @@ class LeastSetSearch:
             found = sets.next(self.threshold, sets.nodes + most + 1, budget)
             if found is False:
                 self._whole = None
-                self._open.clear()
+                self._nodes.clear()
                 return
-            root = self._open[0]
-            self._open = [replace(root, bound=max(root.bound, min(sets.least_open, self.threshold)))]
+            root = self._nodes.take()
+            self._nodes.raise_bound(replace(root, bound=max(root.bound, min(sets.least_open, self.threshold))))
             yield found
         self._whole = None
 
@@ -174,7 +165,7 @@ class LeastSetSearch:
             return
         if not node.is_bounded:
             node, suggested = self._bounded(node, robots, size, budget)
-            self._in_hand = node
+            self._nodes.raise_bound(node)
             yield from self._try(node.inside | frozenset(robots[suggested].tolist()), budget)
         if node.bound >= self.threshold:
             return
@@ -190,8 +181,7 @@ class LeastSetSearch:
         factor = params.after_success if finished else params.after_failure
         self._work = min(max(int(self._work * factor), params.fewest), params.most)
         if not finished:
-            for child in node.split(robots, node.bound, self._serial):
-                heapq.heappush(self._open, child)
+            self._nodes.keep(node.split(robots, node.bound, self._serial))
             self._serial += 2
 
     def _bounded(self, node: SetNode, robots: IntArray, size: int, budget: Budget) -> tuple[SetNode, IntArray]:

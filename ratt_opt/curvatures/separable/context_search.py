@@ -7,11 +7,12 @@ tried is the attained end. A node that fixes every owner is evaluated.
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from ratt_opt.search.open_nodes import OpenNodes
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -99,12 +100,12 @@ class ContextSearch:
         self.attained, self.nodes, self._params = attained, 0, params
         self._f, self._added, self._others, self._budget = f, f.information[x], others, budget
         self._serial = 0
-        self._open: list[_ContextNode] = []
+        self._open: OpenNodes[_ContextNode] = OpenNodes([])
         count = len(others.first)
         share = 1.0 / np.bincount(others.owners, minlength=count)[others.owners]
         root = _ContextNode(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(count, dtype=np.bool_), share, 0)
         if count and self._bound(root, params.first_steps):
-            self._open = [root]
+            self._open = OpenNodes([root])
         self.attained.descend(budget)
 
     @property
@@ -115,18 +116,17 @@ class ContextSearch:
     @property
     def lower(self) -> float:
         """Proved lower end: the weakest open part."""
-        return min(self._open[0].bound, self.attained.value) if self._open else self.attained.value
+        return float(min(self._open.bound, self.attained.value))
 
     def refine(self) -> None:
         """Look at the weakest open part again, or split it; an interrupt leaves the parts as they were."""
-        node = self._open[0]
+        node = self._open.take()
         if node.serial == 0 and node.steps < self._params.more_steps:
             kept = [node] if self._bound(node, self._params.more_steps) else []
         else:
             kept = [child for child in self._children(node) if self._bound(child, self._params.child_steps)]
-        parts = [part for part in self._open if part is not node] + kept
-        heapq.heapify(parts)
-        self._open = parts
+        self._open.keep(kept)
+        self._open.done()
 
     def _bound(self, node: _ContextNode, steps: int) -> bool:
         """Raise a part's bound by more tangents; whether it may still hold a smaller marginal."""
