@@ -41,6 +41,10 @@ from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.result import MaxMinResult as MaxMinResult
 from .solvers.undominated import undominated as undominated, UndominatedProblem as UndominatedProblem
 
+# == Planning by messages
+from .decentralised.plan import DecentralisedPlan as DecentralisedPlan, decentralised_ratt as decentralised_ratt
+from .decentralised.faults import Faults as Faults, RadioParams as RadioParams
+
 # == Attackers
 from .attack.exact import worst_case_attack as worst_case_attack
 from .attack.survey import attack_survey as attack_survey

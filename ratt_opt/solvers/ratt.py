@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import inf, isinf
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,11 +18,15 @@ from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.lazy_greedy import LazyGreedy
 
+if TYPE_CHECKING:
+    from ratt_opt.graph.threat import Threat
+
 __all__ = [
     "alpha_cs_in_share",
     "bait_and_greedy",
     "equivalent_sensing_attacks",
     "greedy",
+    "links_worth",
     "myopic",
     "random_plan",
     "ratt",
@@ -55,13 +60,15 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
     is_small = problem.n_robots <= LARGEST_LATTICE  # a tenth of a second: the same however busy the machine is
     left = inf if budget is None or is_small else budget.seconds_left
-    return _worth(problem, Budget(None if isinf(left) else max(SIZE_SHARE * left, min(QUICK, HALF * left), AT_ONCE)))
+    seconds = None if isinf(left) else max(SIZE_SHARE * left, min(QUICK, HALF * left), AT_ONCE)
+    return links_worth(problem.threat, Budget(seconds))
 
 
-def _worth(problem: Problem, budget: Budget) -> int:
-    if problem.threat.links_alike:
-        return caa(problem.n_robots, problem.alpha_c).alpha_cs
-    return problem.n_robots - bound_soon(replace(problem.threat, alpha_s=0), budget)
+def links_worth(threat: Threat, budget: Budget | None = None) -> int:
+    """Sensing attacks that the link attacks of a threat are worth: the same number for the same links, without time."""
+    if threat.links_alike:
+        return caa(threat.graph.n_robots, threat.alpha_c).alpha_cs
+    return threat.graph.n_robots - bound_soon(replace(threat, alpha_s=0), budget or Budget())
 
 
 def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None = None) -> Plan:
@@ -96,7 +103,7 @@ left. If no time is set nothing is cut short."""
 def alpha_cs_in_share(problem: Problem, budget: Budget) -> int:
     """``alpha_cs`` as far as it is found in a share of a search's time: RATT's plan is but its first one."""
     seconds = budget.seconds_left
-    return _worth(problem, budget.part(min(max(FIRST_SHARE, QUICK / max(seconds, QUICK)), SHORT_SHARE)))
+    return links_worth(problem.threat, budget.part(min(max(FIRST_SHARE, QUICK / max(seconds, QUICK)), SHORT_SHARE)))
 
 
 @Step("planning")

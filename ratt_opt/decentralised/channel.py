@@ -1,0 +1,65 @@
+"""Items of one robot for one neighbour: each arrives once and in order, whatever the link loses, repeats or reorders.
+
+Items are numbered from 0. A packet has those that were not sent before (or, after a silent tick, all that are not known
+to have arrived) and says how many of the other's items have arrived in order. If items are missing in between, a packet
+is dropped; it comes again. This is go-back-N.
+
+Source: Tanenbaum, Computer Networks, Section 3.4.2.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ratt_opt.decentralised.messages import Item, Packet
+
+__all__ = ["Channel"]
+
+
+class Channel:
+    """One robot's end of a link."""
+
+    __slots__ = ("_arrived", "_at_last_tick", "_items", "_must_answer", "_owes_answer", "_sent", "received")
+
+    def __init__(self) -> None:
+        self._items: list[Item] = []
+        self._sent = self._arrived = self._at_last_tick = self.received = 0
+        self._owes_answer = self._must_answer = False
+
+    @property
+    def is_idle(self) -> bool:
+        """True if all items have arrived there, and the other robot knows what has arrived here."""
+        return self._arrived == len(self._items) and not self._owes_answer
+
+    def add(self, item: Item) -> None:
+        """Append an item to send."""
+        self._items.append(item)
+
+    def take(self) -> tuple[int, tuple[Item, ...]] | None:
+        """Items to send now, with the number of the first; ``None`` if there is nothing to send."""
+        if self._sent == len(self._items) and not self._must_answer:
+            return None
+        first, self._sent = self._sent, len(self._items)
+        self._owes_answer = self._must_answer = False
+        return first, tuple(self._items[first:])
+
+    def accept(self, packet: Packet) -> tuple[Item, ...]:
+        """Items of a packet that are new and next in order."""
+        self._arrived = max(self._arrived, min(packet.received, len(self._items)))
+        self._sent = max(self._sent, self._arrived)
+        if not packet.items:
+            return ()
+        self._owes_answer = True
+        if packet.first > self.received:
+            return ()
+        new = packet.items[self.received - packet.first :]
+        self.received += len(new)
+        return new
+
+    def tick(self) -> None:
+        """Let time pass: answer, and send again if nothing arrived since the last tick."""
+        self._must_answer = self._owes_answer
+        if self._arrived == self._at_last_tick:
+            self._sent = self._arrived
+        self._at_last_tick = self._arrived
