@@ -20,11 +20,9 @@ from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.enumeration import enumerate_by_values
 from ratt_opt.attack.exchanges import exchange_attack
 from ratt_opt.attack.protection import best_links, criticality
-from ratt_opt.attack.size_vectors import size_vector_search
 from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
-from ratt_opt.attack.stages import every_attack, greedy_steps, single_robots
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.attack.team import Links, Team
@@ -175,11 +173,8 @@ PACKED = {
 }
 """The other groups are packed around each largest one."""
 NO_TABLES = {
-    (all_sets, "LARGEST_VALUED"): 0,
-    (all_sets, "LARGEST_ENUMERATED"): 0,
-    (every_attack, "LARGEST_VALUED"): 0,
-    (greedy_steps, "LARGEST_VALUED"): 0,
-    (single_robots, "LARGEST_VALUED"): 0,
+    (AttackParams, "all_sets.valued"): 0,
+    (AttackParams, "all_sets.enumerated"): 0,
 }
 """Sets of robots are too many to be looked at."""
 LARGE = NO_TABLES | {(AttackParams, "criterion.small"): 0}
@@ -205,7 +200,7 @@ WAYS = {
 
 def size_vectors(most: int) -> Way:
     """Vectors of sizes that are searched."""
-    return {(size_vector_search, "MOST_VECTORS"): most}
+    return {(AttackParams, "size_vectors.most_vectors"): most}
 
 
 def open_nodes(most: int) -> Way:

@@ -20,6 +20,9 @@ __all__ = [
 class AllSetsParams:
     """Thresholds with the values of all sets of robots.
 
+    ``valued`` : most robots whose sets are all valued if there is no compiled code; 2 to that power are values
+    ``enumerated``, ``most_work`` : most robots whose sets the compiled code enumerates (2 to that power are bytes), and
+    most multiplications for their values; more close larger teams by this, later
     ``starts`` : annealed attacks before the first threshold. ``moves`` : of a start, for each pair of robots
     ``few`` : robots whose sets are all valued first
     ``block`` : sets valued at once, which is lost if the budget ends
@@ -31,6 +34,9 @@ class AllSetsParams:
     ``most_columns`` : within the gap, for covers to be searched
     """
 
+    valued: int = 20
+    enumerated: int = 24
+    most_work: float = 2.0**32
     starts: int = 4
     moves: int = 400
     few: int = 12

@@ -19,6 +19,8 @@ __all__ = [
 class SizeVectorParams:
     """Stages of an attack by size vectors; shares are of the remaining time.
 
+    ``most_vectors`` : vectors of sizes that are searched, at most 5,000; if there are more, some make attacks, and the
+    bound is that of the forced size
     ``forced_share`` : for the weakest set of the forced size. ``first_share`` : to test the attack in hand
     ``annealed_share`` : for annealed attacks. ``prices_share`` : for dual prices of robots and links
     ``first_effort`` : nodes to test the attack in hand
@@ -30,6 +32,7 @@ class SizeVectorParams:
     blinded
     """
 
+    most_vectors: int = 5_000
     forced_share: float = 0.5
     first_share: float = 0.2
     annealed_share: float = 0.3

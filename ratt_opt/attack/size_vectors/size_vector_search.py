@@ -41,10 +41,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SizeVectorSearch"]
 
-MOST_VECTORS = FIRST - 1
-"""Vectors of sizes that are searched; there are at most 90 at 30 robots, 2,813 at 60 of the budgets of the benchmark.
-If there are more, some make attacks, and the bound is that of the forced size."""
-
 
 class SizeVectorSearch:
     """Search by size vectors that closes the task's bracket; relies on a non-decreasing objective.
@@ -58,8 +54,9 @@ class SizeVectorSearch:
         n_robots, n_blinded, alpha_c = team.robots, self.threat.n_blinded, self.threat.alpha_c
         self._given = vectors
         allowed = first_non_dominated_sizes(n_robots, n_blinded, alpha_c) if vectors is None else vectors
-        self.vectors = list(allowed[: MOST_VECTORS + 1])
-        self.has_all_vectors = len(self.vectors) <= MOST_VECTORS
+        most = min(team.params.size_vectors.most_vectors, FIRST - 1)
+        self.vectors = list(allowed[: most + 1])
+        self.has_all_vectors = len(self.vectors) <= most
         self.weak = WeakFamilies(task, team)
         self.families: list[GroupExchanges] = []
         self._is_about_families = False

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from ratt_opt.attack.enumeration import enumerate_by_values
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
-from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
 from ratt_opt.graph.few_cuts import MOST_ATTACKS, attacks_are_few
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ class EveryValuedAttackStage(Stage[AttackState]):
             free = n_robots - len(threat.protected_robots)
             blinded = sum(comb(free, k) for k in range(threat.n_blinded + 1))
             return bool(blinded <= min(MOST_ATTACKS, 2 ** (n_robots - 1)))
-        return n_robots > LARGEST_VALUED and not threat.links_alike and attacks_are_few(threat)
+        return n_robots > attack.task.params.all_sets.valued and not threat.links_alike and attacks_are_few(threat)
 
     def run(self, attack: AttackState) -> Stop:
         """Every attack, valued one by one."""

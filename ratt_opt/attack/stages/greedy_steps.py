@@ -8,7 +8,6 @@ from ratt_opt.attack.exchanges import exchange_attack
 from ratt_opt.attack.heuristics import greedy_attack
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
-from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
 
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
@@ -38,7 +37,7 @@ class ExchangesStage(Stage[AttackState]):
 
     def applies(self, attack: AttackState) -> bool:
         """More than 20 robots, or a limit."""
-        return attack.n_robots > LARGEST_VALUED or attack.is_limited
+        return attack.n_robots > attack.task.params.all_sets.valued or attack.is_limited
 
     def run(self, attack: AttackState) -> None:
         """Greedy steps, then exchanges."""

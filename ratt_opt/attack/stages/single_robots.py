@@ -15,7 +15,6 @@ import numpy as np
 from ratt_opt.attack.bounds import first_bound, forced_survivors, strongest_left
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Stage
-from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
 from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ class SingleValuesStage(Stage[AttackState]):
 
     def applies(self, attack: AttackState) -> bool:
         """More than 20 robots, or a limit."""
-        return attack.n_robots > LARGEST_VALUED or attack.is_limited
+        return attack.n_robots > attack.task.params.all_sets.valued or attack.is_limited
 
     def run(self, attack: AttackState) -> None:
         """Raise the lower bound by single robots and their marginals."""

@@ -31,21 +31,16 @@ if TYPE_CHECKING:
     from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["LARGEST_ENUMERATED", "LARGEST_VALUED", "AllSets", "Reachability", "can_enumerate_subsets", "decide"]
-
-LARGEST_VALUED = 20
-"""Most robots whose sets are all valued if the compiled code does not support the objective: 2**20 values."""
-LARGEST_ENUMERATED, MOST_WORK = 24, 2.0**32
-"""Most robots whose sets the compiled code enumerates (2**24 bytes), and most multiplications for their values."""
+__all__ = ["AllSets", "Reachability", "can_enumerate_subsets", "decide"]
 
 
 def can_enumerate_subsets(task: AttackTask) -> bool:
     """Tell whether all subsets of the team can be enumerated, by the compiled code or by their values."""
-    n_robots, f = task.problem.n_robots, task.problem.objective
+    n_robots, f, params = task.problem.n_robots, task.problem.objective, task.params.all_sets
     if not has_native_kernel(f):
-        return n_robots <= LARGEST_VALUED and 2**n_robots <= task.budget.evaluations_left
-    is_soon = work_of_value(f) * 2.0**n_robots <= MOST_WORK
-    return n_robots <= LARGEST_VALUED or (is_soon and n_robots <= LARGEST_ENUMERATED)
+        return n_robots <= params.valued and 2**n_robots <= task.budget.evaluations_left
+    is_soon = work_of_value(f) * 2.0**n_robots <= params.most_work
+    return n_robots <= params.valued or (is_soon and n_robots <= params.enumerated)
 
 
 class AllSets:

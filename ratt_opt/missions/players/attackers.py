@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack, random_attack
-from ratt_opt.attack.thresholds.all_sets import LARGEST_VALUED
+from ratt_opt.attack.params import DEFAULT
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import get_player
@@ -30,7 +30,7 @@ A limit of seconds would make missions depend on the machine."""
 
 
 def _worst(problem: Problem, plan: IntArray) -> AttackResult:
-    at_once = problem.threat.links_alike or problem.n_robots <= LARGEST_VALUED
+    at_once = problem.threat.links_alike or problem.n_robots <= DEFAULT.all_sets.valued
     return worst_case_attack(problem, plan, max_nodes=None if at_once else NODES, brief=not at_once)
 
 
