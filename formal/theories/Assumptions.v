@@ -13,6 +13,8 @@ Print Assumptions split_total_curvature.
 Print Assumptions split_submodular.
 Print Assumptions baits_submodular.
 Print Assumptions baits_total_curvature.
+Print Assumptions components_submodular.
+Print Assumptions components_total_curvature.
 Print Assumptions group_size_submodular_any.
 Print Assumptions group_size_total_curvature_any.
 Print Assumptions ratt_optimal_any.

@@ -2,7 +2,7 @@
     these are, and however the team was split while it planned. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees.
+From Ratt Require Import Extrema Teams Guarantees Planner GroupSize.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -229,3 +229,45 @@ rewrite -(ler_pmul2l Qp); apply: le_trans (heard_submodular n0 best oko k0 k1 mo
 rewrite -subr_ge0 (_ : _ - _ = 0) //; field; exact: lt0r_neq0.
 Qed.
 End Cliques.
+
+(** ** Components that plan alone, and the size of groups
+
+    Each component gives the first [alpha_s + 1] of its own robots, by individual value, their individually best elements.
+    RATT in a component does so with [alpha_s] baits already: the first greedy robot chooses beside nothing. *)
+Section Components.
+Variables (F : realFieldType) (R E : finType) (t : team R E) (phi : {set E} -> F) (default : E) (g : nat).
+Variables (K : eqType) (component : R -> K) (u : {ffun R -> E}).
+Let order := by_value t phi default.
+Definition before_in_component i : {set R} :=
+  [set j | (component j == component i) && (index j order < index i order)%N].
+
+Hypothesis every_robot_owns : forall i, exists x, owner t x = i.
+Hypothesis robots : (alpha_s t < #|R|)%N.
+Hypotheses (n0 : normalised phi) (mono : non_decreasing t phi) (oku : is_plan t u).
+Hypothesis first_ones : forall i, (#|before_in_component i| <= alpha_s t)%N ->
+  alone phi (best t phi default i) <= phi [set u i].
+Hypothesis reach :
+  exists2 a, allowed t a & {subset strongest t phi default <= blinded a} /\ forall i, (#|sees t a i| <= g)%N.
+
+Lemma first_of_team : {in take (alpha_s t).+1 order, forall i, alone phi (best t phi default i) <= phi [set u i]}.
+Proof.
+move=> i; rewrite in_take ?mem_order // ltnS => ia; apply: first_ones; apply: leq_trans ia.
+have sub : before_in_component i \subset take (index i order) order.
+  by apply/subsetP => j; rewrite inE => /andP[_ ji]; rewrite in_take ?mem_order.
+apply: leq_trans (subset_leq_card sub) _; apply: leq_trans (card_size _) _.
+by rewrite size_take; case: ltnP => // /ltnW.
+Qed.
+
+Theorem components_submodular : submodular t phi -> optimum t phi <= g%:R * worst_case t phi u.
+Proof.
+move=> sub; have [i0 _] : exists i0 : R, i0 \in R by apply/card_gt0P; apply: leq_ltn_trans robots.
+exact: (baits_submodular i0 every_robot_owns robots n0 mono reach oku first_of_team sub).
+Qed.
+
+Theorem components_total_curvature c : c <= 1 -> (0 < g)%N -> total_curvature_at_most t phi c ->
+  (1 - c) * optimum t phi <= (g.-1%:R + (1 - c)) * worst_case t phi u.
+Proof.
+move=> c1 g0 curv; have [i0 _] : exists i0 : R, i0 \in R by apply/card_gt0P; apply: leq_ltn_trans robots.
+exact: (baits_total_curvature i0 every_robot_owns robots n0 mono reach oku first_of_team c1 g0 curv).
+Qed.
+End Components.
