@@ -53,9 +53,10 @@ class Curvature:
     """Claim: ``lower <= curvature <= upper`` over ``domain``.
 
     ``element`` attains ``lower``: its marginal in ``smallest_context`` is the smallest found, and the one in
-    ``largest_context`` the largest. ``useless`` : elements whose every marginal is computed as 0, left out by
-    definition (0 / 0 says nothing about them). ``near_zero`` : elements whose largest marginal is positive but within
-    the rounding of the function's values: they count for ``upper``, and nothing about them is used for ``lower``.
+    ``largest_context`` the largest. ``useless`` : elements that surely add nothing, left out by definition (0 / 0
+    says nothing about them): without information about what counts or, of functions known by values, whose every
+    marginal is 0. ``near_zero`` : others whose largest marginal is within the rounding of the function's values. They
+    count for ``upper``, which is then 1, and nothing about them is used for ``lower``.
     Both ends are moved outward by what the values that they are quotients of may have rounded.
     ``how`` : what the ends rest on. ``stop`` : why the search stopped; ``nodes`` : parts of the domain bounded.
     ``marginals`` : what is known of every element of the domain, in ascending order (its contexts name elements by
@@ -248,8 +249,9 @@ def _curvature_from(found: MeasuredMarginals, domain: Domain) -> Curvature:
     marginals, noise = found.marginals, domain.noise
     most, seen = marginals.largest_upper, marginals.largest_lower
     useful = most > 0
-    doubtful = useful & (most <= noise)
-    safe, shown = np.full(len(most), np.inf), np.full(len(most), np.inf)
+    may_add = useful | domain.may_add
+    doubtful = may_add & (most <= noise)
+    safe, shown = np.where(may_add, 0.0, np.inf), np.full(len(most), np.inf)
     safe[useful] = quotient_below(marginals.smallest_lower[useful], most[useful], noise)
     sure = useful & (seen > noise)
     shown[sure] = quotient_above(marginals.smallest_upper[sure], seen[sure], noise)
@@ -262,9 +264,9 @@ def _curvature_from(found: MeasuredMarginals, domain: Domain) -> Curvature:
         element=None if x is None else domain.element(x),
         smallest_context=() if x is None else domain.named(marginals.smallest_context[x]),
         largest_context=() if x is None else domain.named(marginals.largest_context[x]),
-        useless=tuple(domain.element(x) for x in np.flatnonzero(~useful)),
+        useless=tuple(domain.element(x) for x in np.flatnonzero(~may_add)),
         near_zero=tuple(domain.element(x) for x in np.flatnonzero(doubtful)),
-        how=found.how if useful.any() else "no element ever adds anything",
+        how=found.how if may_add.any() else "no element ever adds anything",
         stop=found.stop,
         nodes=found.nodes,
         marginals=marginals,

@@ -53,6 +53,12 @@ class Domain:
         return f.f.is_submodular if isinstance(f, Restricted) else f.is_submodular
 
     @property
+    def may_add(self) -> BoolArray:
+        """(n,) whether an element may add something although its marginals are computed as 0."""
+        f = self.restricted
+        return ~silent(f) if isinstance(f, InformationObjective) else np.zeros(f.n, dtype=np.bool_)
+
+    @property
     def groups(self) -> list[IntArray]:
         """Elements of each owner."""
         return [np.flatnonzero(self.owners == i) for i in range(int(self.owners.max(initial=-1)) + 1)]
@@ -94,6 +100,22 @@ def _domain(name: str, f: SetFunction, restricted: SetFunction, owners: IntArray
     groups = [names[owners == i] for i in range(int(owners.max(initial=-1)) + 1)]
     noise = 2 * value_error(f, groups, largest)
     return Domain(name=name, restricted=restricted, owners=owners, names=names, noise=noise, largest=largest)
+
+
+def silent(f: InformationObjective) -> BoolArray:
+    """(n,) whether an element surely adds nothing to any set.
+
+    So it is if it has no information, or none that reaches the coordinates that count: the nonzero entries of a
+    target's prior and information matrices join its coordinates, and what is not joined is independent, exactly.
+    """
+    d = f.dimension
+    joined = (f.prior != 0) | (f.information != 0).any(axis=0)
+    for _ in range(max(d - 1, 0).bit_length()):
+        joined = joined | (joined.astype(np.int64) @ joined.astype(np.int64) > 0)
+    counts = np.ones((f.n_targets, d), np.bool_) if f.output is None else (f.output != 0).any(axis=-2)
+    reached = (joined & np.broadcast_to(counts, (f.n_targets, d))[:, None, :]).any(axis=-1)
+    told = (f.information != 0).any(axis=-1) & reached
+    return np.asarray(~told.any(axis=(1, 2)))
 
 
 def values_over(f: SetFunction, groups: list[IntArray], budget: Budget) -> FloatArray:

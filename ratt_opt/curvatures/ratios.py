@@ -113,8 +113,10 @@ def submodularity_ratio(
         if float(np.prod([2.0 * len(group) + 1 for group in groups])) <= params.largest_pairs:
             found = _smallest_ratio(values, groups, domain.noise, part)
             part.check()
-            return _ratio(found.lower, found, domain, "every nested pair of sets", Stop.EXHAUSTED)
+            known = 0.0 if len(_hidden_owners(domain, values)) > 1 else found.lower
+            return _ratio(known, found, domain, "every nested pair of sets", Stop.EXHAUSTED)
         later = _later_marginals(values, groups, domain.noise, inner)
+        later = 0.0 if len(_hidden_owners(domain, values)) > 1 else later
     except OutOfBudget:
         return _ratio_from_curvature(domain, seed, inner, params)
     except KeyboardInterrupt:
@@ -153,7 +155,9 @@ def generalised_curvature(
     if domain.count <= params.largest_enumeration:
         try:
             part = inner.part(params.enumeration_share)
-            exact = _smallest_kept(_monotone_values(domain, part), domain.groups, domain.noise, part)
+            values = _monotone_values(domain, part)
+            exact = _smallest_kept(values, domain.groups, domain.noise, part)
+            exact = replace(exact, least=0.0) if _hidden_owners(domain, values) else exact
         except OutOfBudget:
             pass  # a bracket in the time left
         except KeyboardInterrupt:
@@ -216,6 +220,15 @@ def _monotone_values(domain: Domain, budget: Budget) -> FloatArray:
     values = domain.values(budget)
     enumerate_marginals(domain, budget, values)  # refuses a function that falls
     return values
+
+
+def _hidden_owners(domain: Domain, values: FloatArray) -> set[int]:
+    """Owners of elements that may add something where that is computed as 0: no quotient of it is known."""
+    may_add = domain.may_add
+    if not may_add.any():
+        return set()
+    least = {x: float(gain.min()) for x, gain, _ in each_marginal(values, domain.groups)}
+    return {int(domain.owners[x]) for x, gain in least.items() if may_add[x] and gain <= 0}
 
 
 def _smallest_ratio(values: FloatArray, groups: list[IntArray], noise: float, budget: Budget) -> _Pair:

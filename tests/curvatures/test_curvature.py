@@ -121,6 +121,30 @@ def test_elements_that_add_nothing_are_left_out_and_named():
     assert nothing.useless == (0, 1, 2)
 
 
+def test_information_that_rounding_hides_leaves_the_upper_end_at_one():
+    """Its marginals are computed as 0 and are not: in exact arithmetic the total curvature is positive."""
+    prior = 1e6 * np.eye(2)[None]
+    for kind in KINDS:
+        for scale in (1e-26, 1e-40, 1e-300):
+            found = ro.total_curvature(OBJECTIVES[kind](prior, scale * np.eye(2)[None, None].repeat(2, axis=0)))
+            assert (found.lower, found.upper, found.useless, found.near_zero) == (0.0, 1.0, (), (0, 1))
+            f = OBJECTIVES[kind](prior, scale * np.eye(2)[None, None].repeat(2, axis=0))
+            kept, ratio = ro.generalised_curvature(f), ro.submodularity_ratio(f)
+            assert (kept.lower, kept.upper) == (0.0, 1.0)
+            assert (ratio.lower, ratio.upper) == ((1.0, 1.0) if f.is_submodular else (0.0, 1.0))
+
+
+def test_information_about_what_does_not_count_is_useless():
+    """Coordinates 0 and 1 count; 2 and 3 are independent of them until a prior or an element joins them."""
+    prior, output = np.eye(4)[None], np.eye(4)[:2]
+    information = np.zeros((3, 1, 4, 4))
+    information[0, 0, 0, 0] = information[1, 0, 2, 2] = information[2, 0, 1, 1] = 1.0
+    assert ro.total_curvature(ro.TraceObjective(prior, information, output=output)).useless == (1,)
+    joined = prior.copy()
+    joined[0, 1, 3] = joined[0, 3, 1] = joined[0, 2, 3] = joined[0, 3, 2] = 0.5
+    assert ro.total_curvature(ro.TraceObjective(joined, information, output=output)).useless == ()
+
+
 def test_an_element_within_rounding_decides_only_the_upper_end():
     prior = np.eye(2)[None] * 4.0
     information = np.array([np.eye(2), 2 * np.eye(2), 1e-16 * np.eye(2)])[:, None]
