@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["OpenNodes"]
 
 
-class Node(Protocol):
+class OpenNode(Protocol):
     """A part of the solutions: ``bound`` holds for all of them, and nodes are ordered by it, the least first."""
 
     @property
@@ -34,7 +34,7 @@ class Node(Protocol):
     def __lt__(self, other: Any, /) -> bool: ...
 
 
-N = TypeVar("N", bound=Node)
+N = TypeVar("N", bound=OpenNode)
 
 
 class OpenNodes(Generic[N]):
