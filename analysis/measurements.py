@@ -170,6 +170,7 @@ def _certificates_10() -> dict[str, tuple[float, float]]:
 AGAIN: dict[str, Callable[[str], tuple[float, float]]] = {
     "demo": _demo,
     "attack_10": _attack,
+    "attack_20": _attack,
     "attack_30": _attack,
     **dict.fromkeys(("plan_10", "verify_10", "certificate_10"), lambda name: _certificates_10()[name]),
 }

@@ -3,9 +3,10 @@
 Run as ``python -m analysis.walk [--offline] [--out DIR]``. It clones the repository, installs the clone in a new
 environment, and does the jobs of ``docs/guides/three_jobs.md``: it writes the page's files, runs its commands outside
 of the clone, and checks what each job should leave. It prints the lines of code and the seconds of each job, and
-returns 1 if a job fails or takes more lines than ``AIMS`` says. Then it walks as a reviewer does (``REVIEW``): a
-certificate before the second checker, and the whole witnesses of the lines that fail. With ``--offline`` the
-dependencies are those of the running environment; otherwise pip gets them.
+returns 1 if a job fails or takes more lines than ``AIMS`` says. Then it walks as a reviewer does (``REVIEW``): the
+numbers of the README, measured again or named with the command that is slow; a certificate before the second checker;
+and the whole witnesses of the lines that fail. The notebooks have a walk of their own, ``analysis.notebooks --check``.
+With ``--offline`` the dependencies are those of the running environment; otherwise pip gets them.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ BLOCK = re.compile(
 )
 
 REVIEW = """
+(cd "$CLONE" && python -m analysis.measurements --check)
 ratt-opt new --robots 3 --targets 2 --sensing-attacks 1 --link-attacks 1 --seed 1 --out tiny.json
 ratt-opt bound tiny.json --out tiny
 ratt-opt verify tiny/certificate.json --explain
@@ -93,9 +95,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             said = fault or f"done in {monotonic() - began:.0f} s"
             print(f"{job.title}: {job.lines} lines of code (at most {AIMS[job.name]}), {said}", flush=True)
         began = monotonic()
-        fault = _failure(REVIEW, folder, commands, {"CLONE": str(place / "clone")})
-        faults += fault is not None
-        print(f"A reviewer: {fault or f'done in {monotonic() - began:.0f} s'}", flush=True)
+        done = _ran(REVIEW, folder, commands, {"CLONE": str(place / "clone")})
+        faults += done.returncode != 0
+        said = f"failed\n{done.stderr}" if done.returncode else f"done in {monotonic() - began:.0f} s"
+        print(f"{done.stdout}A reviewer: {said}", flush=True)
     return int(faults > 0)
 
 
@@ -128,20 +131,25 @@ def run_job(job: Job, folder: Path, commands: Path) -> str | None:
         if file is not None:
             (folder / file).write_text(code, encoding="utf-8")
             continue
-        if fault := _failure(code, folder, commands, {}):
+        if fault := _failure(code, folder, commands):
             return fault
     if job.lines > AIMS[job.name]:
         return "too many lines"
     return CHECKS[job.name](folder)
 
 
-def _failure(code: str, folder: Path, commands: Path, more: Mapping[str, str]) -> str | None:
-    """Run commands with the programs of ``commands`` alone; return what they print if one fails."""
+def _failure(code: str, folder: Path, commands: Path) -> str | None:
+    """Run commands; return what they print if one fails."""
+    done = _ran(code, folder, commands, {})
+    return f"failed: {code.strip()}\n{done.stdout}{done.stderr}" if done.returncode else None
+
+
+def _ran(code: str, folder: Path, commands: Path, more: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
+    """Run commands with the programs of ``commands`` alone, up to the first that fails."""
     environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH", "VIRTUAL_ENV"}}
     environment |= {"PATH": f"{commands}:{environment['PATH']}", "MPLBACKEND": "Agg", **more}
     shell = ["bash", "-euo", "pipefail", "-c", code]
-    done = subprocess.run(shell, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    return f"failed: {code.strip()}\n{done.stdout}{done.stderr}" if done.returncode else None
+    return subprocess.run(shell, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
 def _drones_are_planned(folder: Path) -> str | None:

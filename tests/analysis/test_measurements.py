@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from analysis import measurements
@@ -42,3 +44,11 @@ def test_a_place_is_filled_or_named() -> None:
     assert filled("a: 7 to 8 m.", "a: {x} m.", known) == "a: 1,200 to 3 m."
     with pytest.raises(ValueError, match="0 places"):
         filled("b: 7 m.", "a: {x} m.", known)
+
+
+def test_every_section_of_measurements_has_a_command_and_a_date() -> None:
+    text = (measurements.ROOT / "docs" / "researchers" / "benchmarks.md").read_text(encoding="utf-8")
+    for section in text.split("\n## ")[1:]:
+        title = section.partition("\n")[0]
+        assert "`" in section, title
+        assert re.search(r"^Figures of .*20\d\d-\d\d-\d\d \([0-9a-f]{8}", section, re.MULTILINE), title
