@@ -92,6 +92,8 @@ class Problem:
     alpha_c : links the attacker may cut, in ``[0, number of links]``
     protected_robots : robots that cannot be blinded
     protected_links : links ``(i, j)`` that cannot be cut
+    at_most : robots that may choose an element that is not their idle one, or ``None`` for all. The idle element of a
+        robot is its first one that is worth nothing alone; ``idle`` holds them
 
     Two problems are equal when they are the same object. ``dataclasses.replace`` makes a changed copy.
     ``threat`` holds what the adversary may do; ``choices`` the elements of each robot, ascending.
@@ -110,6 +112,7 @@ class Problem:
     alpha_c: int = _of_threat("alpha_c")
     protected_robots: frozenset[int] = _of_threat("protected_robots")
     protected_links: frozenset[tuple[int, int]] = _of_threat("protected_links")
+    at_most: int | None = None
     threat: Threat = field(init=False)
     choices: tuple[IntArray, ...] = field(init=False)
 
@@ -122,6 +125,7 @@ class Problem:
         alpha_c: int,
         protected_robots: Iterable[int] = (),
         protected_links: Iterable[tuple[int, int]] = (),
+        at_most: int | None = None,
     ) -> None:
         if not isinstance(objective, SetFunction):
             raise InputError("objective", "must be a SetFunction", type(objective).__name__)
@@ -140,9 +144,12 @@ class Problem:
             "graph": graph if graph is None or nx.is_frozen(graph) else nx.freeze(graph.copy()),
             "threat": Threat(communication, alpha_s, alpha_c, robots, links),
             "choices": tuple(readonly(np.flatnonzero(owners == i)) for i in range(n_robots)),
+            "at_most": None if at_most is None else check_integer("at_most", at_most, low=0, high=n_robots),
         }
         for name, value in fields.items():
             object.__setattr__(self, name, value)
+        if at_most is not None:
+            assert len(self.idle) == n_robots
 
     def __repr__(self) -> str:
         robots = f"{self.n_robots} robots, {self.objective.n} elements"
@@ -154,6 +161,21 @@ class Problem:
     def n_robots(self) -> int:
         """Number of robots N."""
         return len(self.choices)
+
+    @cached_property
+    def idle(self) -> IntArray:
+        """(N,) the first element of each robot that is worth nothing alone.
+
+        Raises
+        ------
+        InputError : a robot has none.
+        """
+        single = self.objective.singletons()
+        without = [[int(e) for e in choice if single[e] == 0.0] for choice in self.choices]
+        if [] in without:
+            rule = "needs an idle element of every robot, worth 0 alone"
+            raise InputError("at_most", rule, f"none of robot {without.index([])}")
+        return readonly(np.array([elements[0] for elements in without]))
 
     @property
     def information_objective(self) -> InformationObjective:
@@ -233,12 +255,14 @@ class Problem:
         if array.shape != (self.n_robots,):
             raise InputError("elements", f"must hold one element per robot, shape ({self.n_robots},)", elements)
         exists = array.dtype.kind in "iu" and array.min() >= 0 and array.max() < self.objective.n
-        if exists and np.array_equal(self.robot[array], np.arange(self.n_robots)):  # as nearly always
-            return readonly(array.astype(np.int64))
-        for i, element in enumerate(array):
-            e = check_integer(f"elements[{i}]", element, low=0, high=self.objective.n - 1)
-            if self.robot[e] != i:
-                raise InputError(f"elements[{i}]", f"must be an element of robot {i}", f"{e} of robot {self.robot[e]}")
+        if not (exists and np.array_equal(self.robot[array], np.arange(self.n_robots))):  # as hardly ever
+            for i, element in enumerate(array):
+                e = check_integer(f"elements[{i}]", element, low=0, high=self.objective.n - 1)
+                if self.robot[e] != i:
+                    found = f"{e} of robot {self.robot[e]}"
+                    raise InputError(f"elements[{i}]", f"must be an element of robot {i}", found)
+        if self.at_most is not None and (busy := int((array != self.idle).sum())) > self.at_most:
+            raise InputError("elements", f"must choose at most {self.at_most} elements that are not idle", busy)
         return readonly(array.astype(np.int64))
 
     def check_attack(self, attack: Attack) -> Attack:
@@ -288,10 +312,17 @@ class Problem:
         return [group - attack.sensing for group in self.communication.groups(attack.links)]
 
 
-def check_problem(problem: Problem) -> Problem:
-    """Return ``problem``. ``InputError`` : it is something else, as a scenario in its place."""
+def check_problem(problem: Problem, *, knows_at_most: bool = False) -> Problem:
+    """Return ``problem``.
+
+    ``InputError`` : it is something else, as a scenario in its place; or it limits how many robots choose, and the
+    caller does not know that.
+    """
     if not isinstance(problem, Problem):
         raise InputError("problem", "must be a Problem, as scenario.problem() returns", type(problem).__name__)
+    if problem.at_most is not None and not knows_at_most:
+        rule = "must be None for this: only RATT, refined, exhaustive_optimum, attacks and some planners know it"
+        raise InputError("at_most", rule, problem.at_most)
     return problem
 
 

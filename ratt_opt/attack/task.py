@@ -56,7 +56,7 @@ class PlanValues(SetFunction):
     __slots__ = ("evaluations", "objective", "plan")
 
     def __init__(self, problem: Problem, elements: ArrayLike) -> None:
-        self.plan: IntArray = check_problem(problem).check_plan(elements)
+        self.plan: IntArray = check_problem(problem, knows_at_most=True).check_plan(elements)
         self.objective: SetFunction = problem.objective
         self.evaluations = 0
 

@@ -15,6 +15,7 @@ from ratt_opt.bounds.guarantees import (
     theorem1_bound,
 )
 from ratt_opt.bounds.survivors import largest_survivor_group, survivor_bound
+from ratt_opt.problem import check_problem
 
 if TYPE_CHECKING:
     from ratt_opt.budget import Budget
@@ -63,7 +64,7 @@ def all_guarantees(
 
 def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
     """Published guarantees that do not apply to RATT's plan for one problem: name -> the hypothesis that fails."""
-    alpha = problem.alpha_s + alpha_cs
+    alpha = check_problem(problem).alpha_s + alpha_cs
     found: dict[str, str] = {}
     if problem.alpha_c > 0:
         found[SENSING_ONLY] = f"links are attacked (alpha_c = {problem.alpha_c})"

@@ -12,6 +12,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.curvatures.curvature import SECONDS, total_curvature
 from ratt_opt.curvatures.domains import domain_of, over_subsets
 from ratt_opt.errors import InputError
+from ratt_opt.problem import check_problem
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -71,6 +72,7 @@ def instance_bound(
     order is its greedy marginal, at least ``(1-k) m_i``, respectively ``(1-c)^2 m_i``; a bait's likewise. If
     ``alpha_cs >= 1`` nor below the group-size bound.
     """
+    check_problem(problem)
     if (k is None) == (c is None):
         raise InputError("k, c", "must be given one at a time", "neither" if k is None else "both")
     given = k or c

@@ -15,7 +15,7 @@ from ratt_opt.bounds.cuts import GroupCut, combined_bound, mixed_information, ta
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
-from ratt_opt.problem import Attack
+from ratt_opt.problem import Attack, check_problem
 from ratt_opt.running.interrupts import imported_whole
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def relaxation_bound(
 
     Source: concavity of the three criteria in the posterior information; Boyd and Vandenberghe 2004, Section 7.5.
     """
-    objective = problem.information_objective
+    objective = check_problem(problem).information_objective
     if not attacks:
         raise InputError("attacks", "must hold at least one attack", "none")
     largest, others = _groups(problem, attacks)
@@ -224,7 +224,7 @@ def relaxation_bounds(
     ------
     InputError : the objective is no information criterion, or the team is too large to list its outcomes.
     """
-    objective = problem.information_objective
+    objective = check_problem(problem).information_objective
     whole, outcomes = (
         Budget.inside(budget, time_limit),
         list(islice(non_dominated_outcomes(problem.threat), MOST_OUTCOMES + 1)),

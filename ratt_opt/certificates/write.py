@@ -20,6 +20,7 @@ from ratt_opt.certificates.verifier.upper import upper_bounds
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick, watched
 from ratt_opt.errors import InputError, ProofError, UndecidedError
+from ratt_opt.problem import check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
 from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
@@ -63,7 +64,7 @@ def problem_document(problem: Problem) -> dict[str, Any]:
     ------
     InputError : the objective is none of the criteria that the verifier knows.
     """
-    objective = problem.information_objective
+    objective = check_problem(problem).information_objective
     if not _is_known(problem):
         *names, last = CRITERIA
         raise InputError("objective", f"must be {', '.join(names)} or {last} to be certified", type(objective).__name__)

@@ -28,7 +28,7 @@ from ratt_opt.main_job.result import BoundReport, PlanAssessment
 from ratt_opt.missions.first_step import first_step, first_world
 from ratt_opt.missions.players.planners import elements_of, planned_with
 from ratt_opt.missions.world import MissionModel
-from ratt_opt.problem import Plan, Problem
+from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.planner_world import scenario_world
@@ -181,6 +181,7 @@ def bound(
     began = datetime.now(UTC)
     given = scenario_or_problem
     problem, source = _problem_of(given, objective, model)
+    check_problem(problem)
     whole, steps, busy_since = Budget(time_limit), Steps(progress), process_time()
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):

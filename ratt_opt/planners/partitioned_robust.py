@@ -47,8 +47,8 @@ def partitioned_robust(problem: Problem, *, eta: int = 1, budget: Budget | None 
     ICML 2017, Algorithm 1.
     """
     check_integer("eta", eta, low=1)
-    selection = Selection.of(check_problem(problem), budget)
+    selection = Selection.of(check_problem(problem, knows_at_most=True), budget)
     for size in partition_sizes(problem.alpha_s, eta):
-        selection.grow(min(size, problem.n_robots - len(selection.chosen)))
-    selection.grow(problem.n_robots - len(selection.chosen))
+        selection.grow(size)
+    selection.grow(selection.most)
     return selection.plan(problem)

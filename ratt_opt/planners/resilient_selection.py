@@ -28,14 +28,14 @@ def resilient_selection(problem: Problem, *, budget: Budget | None = None) -> Pl
     Source: Tzoumas, Jadbabaie, Pappas, Resilient non-submodular maximization over matroid constraints,
     arXiv 1804.01013 (2018), Algorithm 1 and Theorem 1.
     """
-    selection = Selection.of(check_problem(problem), budget)
+    selection = Selection.of(check_problem(problem, knows_at_most=True), budget)
     single = problem.objective.singletons()
     selection.evaluations += len(single)
     for element in np.lexsort((problem.robot, -single)):  # of equals the lowest robot, then the lowest element
-        if len(selection.chosen) >= min(problem.alpha_s, problem.n_robots):
+        if len(selection.chosen) >= min(problem.alpha_s, selection.most):
             break
-        if problem.robot[element] not in problem.robot[selection.chosen]:
+        if selection.open[element] and problem.robot[element] not in problem.robot[selection.chosen]:
             selection.chosen.append(int(element))
     bait = tuple(int(i) for i in problem.robot[selection.chosen])
-    selection.grow(problem.n_robots)
+    selection.grow(selection.most)
     return selection.plan(problem, bait)

@@ -23,4 +23,4 @@ def sensing_only(problem: Problem, *, budget: Budget | None = None) -> Plan:
     Source: Zhou, Tzoumas, Pappas, Tokekar, Resilient active target tracking with multiple robots, IEEE Robotics and
     Automation Letters 4(1), 2019.
     """
-    return bait_and_greedy(problem, check_problem(problem).alpha_s, budget)
+    return bait_and_greedy(problem, check_problem(problem, knows_at_most=True).alpha_s, budget)

@@ -43,10 +43,11 @@ def uniform_buckets(problem: Problem, *, size: int | None = None, budget: Budget
     Source: Orlin, Schulz, Udwani, Robust monotone submodular function maximization, IPCO 2016 and Mathematical
     Programming 172, 2018, the 0.387 algorithm, in the form of Bogunovic and others 2017, Section 2.
     """
-    lost, count = check_problem(problem).alpha_s, problem.n_robots
+    lost = check_problem(problem, knows_at_most=True).alpha_s
+    count = problem.n_robots if problem.at_most is None else problem.at_most
     given = bucket_size(count, lost) if size is None else check_integer("size", size, low=1)
     selection = Selection.of(problem, budget)
     for _ in range(lost):
-        selection.grow(min(given, count - len(selection.chosen)))
-    selection.grow(count - len(selection.chosen))
+        selection.grow(given)
+    selection.grow(count)
     return selection.plan(problem)

@@ -57,7 +57,8 @@ def exhaustive_optimum(
 
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
-    problem = with_unit_prior(check_problem(problem))
+    asked = check_problem(problem, knows_at_most=True)
+    problem = with_unit_prior(asked)
     shape = _shape(problem, range(problem.n_robots))
     with np.errstate(over="ignore"):
         n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
@@ -81,6 +82,8 @@ def exhaustive_optimum(
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
+    if asked.at_most is not None:
+        worst[_busy(asked, shape) > asked.at_most] = -np.inf
     best = np.unravel_index(int(worst.argmax()), shape)
     picks = iter(best)
     elements = np.array([choice[next(picks) if len(choice) > 1 else 0] for choice in problem.choices])
@@ -94,6 +97,15 @@ def exhaustive_optimum(
         elements=readonly(elements), lower=lower, upper=upper, stop=stop, evaluations=count, nodes=worst.size
     )
     return found.widen_by_rounding(problem)
+
+
+def _busy(problem: Problem, shape: tuple[int, ...]) -> IntArray:
+    """Number of robots of each plan that choose an element which is not idle; a robot without a choice is idle."""
+    count: IntArray = np.zeros(shape, dtype=np.int64)
+    varied = [(choice, idle) for choice, idle in zip(problem.choices, problem.idle, strict=True) if len(choice) > 1]
+    for axis, (choice, idle) in enumerate(varied):
+        count += (choice != idle).reshape([-1 if k == axis else 1 for k in range(len(shape))])
+    return count
 
 
 def _plan_values(problem: Problem, group: Iterable[int], budget: Budget) -> FloatArray:

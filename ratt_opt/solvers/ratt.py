@@ -56,7 +56,7 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
 
     Source: ratt.tex, Algorithm 2 (CAA), for complete graphs.
     """
-    if check_problem(problem).threat.links_alike:
+    if check_problem(problem, knows_at_most=True).threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
     is_small = problem.n_robots <= LARGEST_LATTICE  # a tenth of a second: the same however busy the machine is
     left = inf if budget is None or is_small else budget.seconds_left
@@ -114,7 +114,10 @@ def bait_and_greedy(
 
     ``single`` : (E,) individual values, if known; else asked for. They count as evaluations either way
     """
-    single = check_problem(problem).objective.singletons() if single is None else single
+    check_problem(problem, knows_at_most=True)
+    single = problem.objective.singletons() if single is None else single
+    if problem.at_most is not None:
+        return _choose_few(problem, alpha, budget or Budget(), single)
     best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
     # A stable sort of the negated values keeps the lowest robot first among equals.
     order = np.argsort(-single[best], kind="stable")
@@ -122,6 +125,32 @@ def bait_and_greedy(
     elements = best.copy()
     greedy_robots = np.setdiff1d(np.arange(problem.n_robots), bait)
     evaluations = problem.objective.n + _greedy(problem, greedy_robots, single, elements, budget or Budget())
+    return Plan(elements=readonly(elements), evaluations=evaluations, bait=tuple(int(i) for i in bait))
+
+
+def _choose_few(problem: Problem, alpha: int, budget: Budget, single: FloatArray) -> Plan:
+    """Algorithm 1 if the number of robots that choose is limited: first bait, then greedy ones; the others rest.
+
+    Elements are taken in the same order, with the same ties. A spent budget leaves robots idle.
+    """
+    most, elements = problem.at_most or 0, problem.idle.copy()
+    best = np.array([choice[np.argmax(single[choice])] for choice in problem.choices])
+    bait = np.sort(np.argsort(-single[best], kind="stable")[: min(alpha, most)])
+    elements[bait] = best[bait]
+    useful = np.ones(problem.objective.n, dtype=np.bool_)
+    useful[problem.idle] = False
+    candidates = np.flatnonzero(useful & ~np.isin(problem.robot, bait))
+    chosen, evaluations = np.array([], dtype=np.int64), problem.objective.n
+    while len(candidates) and len(bait) + len(chosen) < most and not budget.is_over:
+        try:
+            values = problem.objective.extensions(chosen, candidates) if len(chosen) else single[candidates]
+        except OutOfBudget:  # of the values of the function
+            break
+        evaluations += len(candidates) if len(chosen) else 0
+        pick = candidates[np.argmax(values)]
+        elements[problem.robot[pick]] = pick
+        chosen = np.append(chosen, pick)
+        candidates = candidates[problem.robot[candidates] != problem.robot[pick]]
     return Plan(elements=readonly(elements), evaluations=evaluations, bait=tuple(int(i) for i in bait))
 
 
@@ -181,11 +210,15 @@ def greedy(problem: Problem, *, budget: Budget | None = None) -> Plan:
 
 def myopic(problem: Problem, *, budget: Budget | None = None) -> Plan:
     """Individually best element of every robot: RATT with ``alpha = N``. Source: ratt.tex, Remark 1."""
-    return bait_and_greedy(problem, check_problem(problem).n_robots, budget)
+    return bait_and_greedy(problem, check_problem(problem, knows_at_most=True).n_robots, budget)
 
 
 def random_plan(problem: Problem, *, seed: int) -> Plan:
     """Uniformly random element of every robot. Source: the algorithm Random of ratt.tex, Section VI."""
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
-    elements = np.array([choice[rng.integers(len(choice))] for choice in check_problem(problem).choices])
+    choices = check_problem(problem, knows_at_most=True).choices
+    elements = np.array([choice[rng.integers(len(choice))] for choice in choices])
+    if problem.at_most is not None:
+        resting = rng.permutation(problem.n_robots)[problem.at_most :]
+        elements[resting] = problem.idle[resting]
     return Plan(elements=readonly(elements), evaluations=0)
