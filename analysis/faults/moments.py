@@ -1,8 +1,9 @@
 """Interrupts at random moments inside each long search: each comes back soon, with a bracket.
 
 Run as ``python -m analysis.faults.moments [--moments 100] [--seed 1] [--seconds 60] [--searches NAME ...]``. A
-thread interrupts the main one (Ctrl-C) once the search has used a random number of seconds of the processor. For each
-search it prints how it came back, and the longest time from the interrupt to its return, in seconds of the processor.
+thread interrupts the main one (Ctrl-C) once the search has used a random number of seconds of the processor, up to what
+it takes undisturbed or ``--most``. For each search it prints how it came back, and the longest time from the interrupt
+to its return, in seconds of the processor.
 The exit code is 1 if one raised, came back as if nothing had been, without a bracket, or later than ``--within``.
 """
 
@@ -189,8 +190,10 @@ def main() -> int:
     rng, is_fine = np.random.default_rng(options.seed), True
     for name in options.searches:
         interrupted_after(searches()[name], options.most)  # loads what is imported when it is first needed
-        until, moments = process_time() + options.seconds, []
-        for delay in rng.uniform(0, options.most, options.moments):
+        began = process_time()
+        interrupted_after(searches()[name], options.most)
+        until, moments, latest = process_time() + options.seconds, [], min(process_time() - began, options.most)
+        for delay in rng.uniform(0, latest, options.moments):
             moments.append(interrupted_after(searches()[name], delay))
             if process_time() > until:
                 break
