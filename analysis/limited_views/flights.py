@@ -1,6 +1,6 @@
-"""Planners under attackers over missions of cameras that turn, one factor varied at a time.
+"""Planners under attackers over missions of cameras that turn: the main cell, then one factor varied at a time.
 
-``python -m analysis.limited_views --trials 60 --out DIR``; ``--only limited_views_main`` flies the main cells alone.
+``python -m analysis.limited_views --trials 60 --out DIR``; ``--only limited_views_main`` flies the main cell alone.
 """
 
 from __future__ import annotations
@@ -24,7 +24,20 @@ if TYPE_CHECKING:
     from ratt_opt.scenario.model import Scenario
     from ratt_opt.studies.cases import Cell, Seeds
 
-__all__ = ["ENTRIES", "MAIN", "METRICS", "PLANNERS", "STEPS", "STUDIES", "VARIED", "case_of", "scenario_of", "sighted"]
+__all__ = [
+    "COMPLETE",
+    "ENTRIES",
+    "MAIN",
+    "METRICS",
+    "PLANNERS",
+    "STEPS",
+    "STUDIES",
+    "UNLIMITED",
+    "VARIED",
+    "case_of",
+    "scenario_of",
+    "sighted",
+]
 
 STEPS = 20
 """Steps of a mission. Windows are the first and the last half, which share no step."""
@@ -40,14 +53,14 @@ COMPLETE, UNLIMITED = "complete", "unlimited"
 
 def case_of(
     *,
-    n_targets: int = 5,
+    n_targets: int = 6,
     view: int = 60,
-    reach: str | int = UNLIMITED,
+    reach: str | int = 40,
     noise: str = "camera",
-    links: str | int = COMPLETE,
+    links: str | int = 45,
     attacks: str = "renewed",
 ) -> Case:
-    """Six robots, two of which may be blinded, and four links that may be cut; the rest varies.
+    """Six robots, two of which may be blinded, and four links that may be cut; the rest is the demo's, or varies.
 
     ``view`` [degrees], ``reach`` [m], ``links`` : complete, or the range of a disk network [m].
     """
@@ -125,33 +138,35 @@ def _longest_gap(seen: BoolArray) -> int:
     return int(np.diff(edges).max()) - 1
 
 
-def _study(name: str, cases: tuple[Case, ...]) -> Study:
+def _study(name: str, attackers: tuple[str, ...], cases: tuple[Case, ...]) -> Study:
     return Study(
         name=f"limited_views_{name}",
         cases=cases,
         planners=PLANNERS,
-        attackers=("worst", "random", "none"),
+        attackers=attackers,
         metrics=METRICS,
         measure=measured,
     )
 
 
-MAIN = _study("main", (case_of(), case_of(links=45), case_of(attacks="persistent"), case_of(view=360)))
+MAIN = _study("main", ("worst", "none"), (case_of(),))
+"""The kind of team that ``bite.py`` chooses."""
 VARIED = _study(
     "varied",
+    ("worst",),
     (
         case_of(view=30),
         case_of(view=120),
-        case_of(view=180),
+        case_of(view=360),
         case_of(reach=30),
-        case_of(view=360, reach=30),
-        case_of(noise="radar"),
-        case_of(noise="coarse"),
-        case_of(view=360, noise="coarse"),
+        case_of(reach=UNLIMITED),
+        case_of(links=30),
+        case_of(links=COMPLETE),
         case_of(n_targets=3),
         case_of(n_targets=10),
-        case_of(links=30),
-        case_of(links=30, attacks="persistent"),
+        case_of(noise="radar"),
+        case_of(noise="coarse"),
+        case_of(attacks="persistent"),
     ),
 )
 STUDIES = (MAIN, VARIED)

@@ -1,7 +1,7 @@
-"""The tables of limited views, made from the rows of the studies: ``python -m analysis.limited_views.page DIR``.
+"""The pages of limited views, made from the rows of the studies: ``python -m analysis.limited_views.page DIR OUT``.
 
-``python -m analysis.limited_views --trials 60 --out DIR`` runs the studies and writes the same page to
-``DIR/limited_views_tables.md``. Every number and every verdict on it comes from the rows.
+``python -m analysis.limited_views --trials 60 --out DIR`` runs the studies and writes the same into ``DIR``: a figure
+with three sentences, and tables. Every number and every verdict comes from the rows.
 """
 
 from __future__ import annotations
@@ -12,16 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.limited_views.flights import MAIN, PLANNERS, STEPS, STUDIES
+from analysis.limited_views import bite
+from analysis.limited_views.flights import MAIN, PLANNERS, STEPS, STUDIES, VARIED, case_of
 from analysis.limited_views.one_step import STUDY as ONE_STEP
 from analysis.limited_views.verdicts import Outcome, outcome, relative_change
+from analysis.limited_views.worth import figure_of, worth_page
 from ratt_opt._files import write_atomically
 from ratt_opt.errors import InputError
 from ratt_opt.studies.statistics import Estimate, column, estimate, select
 from ratt_opt.studies.store import read_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from ratt_opt.studies.study import Study
 
@@ -36,13 +38,15 @@ OPENING = """# Limited views: tables
 Six robots with cameras that turn among eight headings, drive at 0 or 2 m/s and see only a part of the area; slow
 targets in a square of 60 m; an adversary who blinds two robots and cuts four links (`limited_view_scenario`). Each
 robot must choose what to look at, and a target that few robots watch is a target that the adversary can hide. Two
-commands fly everything, 60 trials of the main cases, 20 of the varied ones, and write this page; killed, they resume:
+commands fly everything, {main} missions of the main cell, {varied} of each varied one; killed, they resume. The third
+writes the pages:
 
 <!-- slow -->
 ```bash
-python -m analysis.limited_views --trials 20 --only limited_views_varied --out results
-python -m analysis.limited_views --trials 60 --only limited_views_main limited_views_one_step --out results
-python -m analysis.limited_views.page results > docs/researchers/limited_views_tables.md
+python -m analysis.limited_views --trials {varied} --only limited_views_varied --out results
+studies="limited_views_bite limited_views_one_step limited_views_main"
+python -m analysis.limited_views --trials 60 --only $studies --out results
+python -m analysis.limited_views.page results docs/researchers
 ```
 
 Every trial draws another team, other targets and other noise, and all planners fly it: trials share nothing, and
@@ -50,10 +54,11 @@ differences are paired. A cell shows the change of a mean against that of the gr
 It *pays* if the interval is below zero and *costs* if it is above; if neither is said, no difference is seen.
 One interval in twenty misses by chance. Missions have {steps} steps, and their two windows, the first and the last
 half, share no step. Max-min plans are searched for ten nodes a step and refined ones take twenty kicks, so that every
-machine flies the same missions. The
-base case has a view of 60 degrees without a limit of range, the camera's noise, five targets, a complete network and
-attacks that are renewed in every step; main cases are bold.
+machine flies the same missions. The main cell (bold) is the demo's kind of team: a view of 60 degrees, a reach of 40 m,
+the camera's noise, six targets, links within 45 m, attacks that are renewed in every step. The others differ from it as
+said.
 """
+ROOT = Path(__file__).parents[2]
 NAMES = {"ratt": "RATT", "maxmin": "max-min", "refined": "refined", "greedy": "greedy", "myopic": "myopic"}
 TABLES = (
     ("worst", "rmse", "Root mean squared error, exact attacks", "m"),
@@ -62,7 +67,6 @@ TABLES = (
     ("worst", "largest", "Largest error of any target in any step, exact attacks", "m"),
     ("worst", "unseen", "Targets and steps without a measurement that reaches the team, exact attacks", "%"),
     ("worst", "longest", "Longest time that some target goes unseen, exact attacks", "steps"),
-    ("random", "rmse", "Root mean squared error, random attacks", "m"),
     ("none", "rmse", "Root mean squared error, nobody attacks: what robust plans cost", "m"),
     ("none", "largest", "Largest error, nobody attacks", "m"),
 )
@@ -70,21 +74,27 @@ TABLES = (
 
 
 def page(folder: Path) -> str:
-    """Return the page, of the studies whose results are in ``folder``."""
+    """Return the page of tables, of the studies whose results are in ``folder``."""
     flown = {study: rows for study in STUDIES if (rows := _rows(folder, study))}
-    parts = [OPENING.format(steps=STEPS)]
-    if steps := _rows(folder, ONE_STEP):
-        parts += ["\n".join(_one_step(steps))]
+    trials = {study: len({row["trial"] for row in rows}) for study, rows in flown.items()}
+    parts = [OPENING.format(steps=STEPS, main=trials.get(MAIN, 0), varied=trials.get(VARIED, 0))]
+    if rows := _rows(folder, bite.STUDY):
+        parts += ["\n".join(_bites(rows))]
+    if rows := _rows(folder, ONE_STEP):
+        parts += ["\n".join(_one_step(rows))]
     if flown:
         parts += ["\n".join(_table(flown, *table)) for table in TABLES]
     return "\n".join(parts)
 
 
-def write_page(folder: Path) -> None:
-    """Write ``limited_views_tables.md`` into the folder of the results, and print it."""
-    text = page(folder)
-    write_atomically(folder / "limited_views_tables.md", lambda file: file.write_text(text, encoding="utf-8"))
-    print(text, end="")
+def write_page(folder: Path, out: Path | None = None) -> None:
+    """Write both pages and the figure beside the results, or into ``out``."""
+    rows = [row for study in STUDIES for row in _rows(folder, study)]
+    texts = {"limited_views.md": worth_page(rows), "limited_views_tables.md": page(folder)}
+    figure, place = figure_of(rows), out or folder
+    for name, text in texts.items():
+        write_atomically(place / name, lambda file, text=text: file.write_text(text, encoding="utf-8"))  # type: ignore[misc]
+    write_atomically(place / "limited_views.png", lambda file: figure.savefig(file, dpi=120))
 
 
 def _rows(folder: Path, study: Study) -> list[dict[str, str]]:
@@ -102,14 +112,41 @@ def _cases(rows: Sequence[Row]) -> Iterator[tuple[str, list[Row]]]:
 
 
 def _particular(row: Row) -> str:
-    """Name the differences from the base case."""
-    words = [f"view {row['view']} degrees"]
-    words += [f"reach {row['reach']} m"] if row["reach"] != "unlimited" else []
-    words += [f"noise {row['noise']}"] if row["noise"] != "camera" else []
-    words += [f"{row['n_targets']} targets"] if row["n_targets"] != "5" else []
-    words += [f"links within {row['links']} m"] if row["links"] != "complete" else []
-    words += [f"{row['attacks']} attacks"] if row["attacks"] != "renewed" else []
-    return ", ".join(words)
+    """Name the differences from the main cell."""
+    main = {**dict(case_of().options), "n_targets": case_of().n_targets}
+    words = {
+        "view": "view {} degrees",
+        "reach": "reach {} m",
+        "noise": "noise {}",
+        "n_targets": "{} targets",
+        "links": "links within {} m",
+        "attacks": "{} attacks",
+    }
+    told = [text.format(row[name]) for name, text in words.items() if row[name] != str(main[name])]
+    plain = {"reach unlimited m": "unlimited reach", "links within complete m": "complete network"}
+    return ", ".join(plain.get(one, one) for one in told) or "main cell"
+
+
+def _bites(rows: Sequence[Row]) -> Iterator[str]:
+    """Show the rule that chooses the main cell, and what it rests on."""
+    yield "## Main cell\n"
+    yield "The rule: an attack *bites* if it costs RATT's plan a tenth of its unattacked value or more, on average over"
+    yield "the first steps of the missions. The main cell has the longest links at which blinding two robots bites and"
+    yield "cutting four links does, each alone, and of these the widest reach. Shares kept [%], with 95 % intervals:\n"
+    yield "| links | reach | teams | two robots blinded | four links cut | both |"
+    yield "| --- | --- | --- | --- | --- | --- |"
+    chosen = bite.chosen(rows)
+    for case in bite.STUDY.cases:
+        kept = bite.shares(rows, case)
+        options = dict(case.options)
+        links, reach = (
+            str(options[name]) if isinstance(options[name], str) else f"{options[name]} m"
+            for name in ("links", "reach")
+        )
+        shown = " | ".join(f"{kept[name].mean:.1f} [{kept[name].low:.1f}, {kept[name].high:.1f}]" for name in kept)
+        mark = "**" if case == chosen else ""
+        yield f"| {mark}{links}{mark} | {mark}{reach}{mark} | {kept['both'].n} | {shown} |"
+    yield ""
 
 
 def _one_step(rows: Sequence[Row]) -> Iterator[str]:
@@ -151,6 +188,8 @@ def _table(flown: Mapping[Study, Sequence[Row]], attacker: str, metric: str, tit
     yield f"| case | seeds | greedy [{unit}] | {' | '.join(head)} |"
     yield f"| --- | --- | --- |{' --- |' * len(head)}"
     for study, rows in flown.items():
+        if attacker not in study.attacker_names:
+            continue
         for name, kept in _cases(rows):
             base = estimate(column(kept, f"{PLANNERS[0]}/{attacker}/{metric}")).mean
             changes = [_change(kept, planner, attacker, metric) for planner in compared]
@@ -165,9 +204,9 @@ def _word(change: Estimate) -> str:
     return "" if found is Outcome.UNSEEN else f" {found.value}"
 
 
-def _main(arguments: Iterable[str]) -> int:
-    for folder in arguments:
-        print(page(Path(folder)), end="")
+def _main(arguments: Sequence[str]) -> int:
+    folder, *out = map(Path, arguments)
+    write_page(folder, *out)
     return 0
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from analysis.limited_views import flights, one_step, page, worth
+from analysis.limited_views import bite, flights, one_step, page, worth
 from analysis.limited_views.flights import case_of, figures_of, scenario_of, sighted
 from analysis.limited_views.verdicts import Outcome, outcome, relative_change
 from ratt_opt.studies.cases import Seeds
@@ -31,7 +31,7 @@ def test_sightings_are_those_that_the_filter_took(seed, reach):
     scenario = scenario_of(case_of(reach=reach), Seeds.of(1, seed))
     mission = ro.run_mission(scenario, steps=8, planner="greedy", seed=seed)
     for step, row in zip(mission.steps, sighted(mission), strict=True):
-        pairs = np.zeros((6, 5), dtype=bool)
+        pairs = np.zeros((6, 6), dtype=bool)
         for i in step.team.see:
             offset = step.truth[:, :2] - step.poses[i, :2]
             ahead = offset @ [np.cos(step.poses[i, 2]), np.sin(step.poses[i, 2])]
@@ -48,14 +48,14 @@ def test_figures_are_their_definitions():
     mission = ro.run_mission(scenario, steps=9, planner="myopic", seed=5)
     found = figures_of(mission)
     errors = np.array(
-        [[np.hypot(*(step.team.belief.mean[j, :2] - step.truth[j, :2])) for j in range(5)] for step in mission.steps]
+        [[np.hypot(*(step.team.belief.mean[j, :2] - step.truth[j, :2])) for j in range(6)] for step in mission.steps]
     )
     assert found["rmse"] == pytest.approx(np.sqrt((errors**2).mean()))
     assert found["rmse_first_half"] == pytest.approx(np.sqrt((errors[:4] ** 2).mean()))
     assert found["rmse_last_half"] == pytest.approx(np.sqrt((errors[4:] ** 2).mean()))
     assert found["largest"] == pytest.approx(errors.max())
     seen = sighted(mission)
-    runs = [len(list(run)) for j in range(5) for is_seen, run in groupby(seen[:, j]) if not is_seen]
+    runs = [len(list(run)) for j in range(6) for is_seen, run in groupby(seen[:, j]) if not is_seen]
     assert found["longest"] == max(runs, default=0)
     assert found["unseen"] == pytest.approx(100 * (~seen).sum() / seen.size)
 
@@ -104,6 +104,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch, ThreadPoolExecutor(1) as executor:
         patch.setattr(flights, "STEPS", 3)
         patch.setattr(one_step, "NODES", 20)
+        run(bite.STUDY, folder / bite.STUDY.name, executor, trials=3, progress=Progress())
         for study in (flights.MAIN, one_step.STUDY):
             small = replace(study, cases=study.cases[:2], planners=tuple(p for p in study.planners if p != "maxmin"))
             run(small, folder / study.name, executor, trials=3, progress=Progress())
@@ -113,7 +114,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_says_what_the_rows_say(results: Path) -> None:
     text = page.page(results)
     rows = read_table(results / flights.MAIN.name)
-    for case in flights.MAIN.cases[:2]:
+    for case in flights.MAIN.cases:
         kept = select(rows, case=case.name)
         greedy, ratt = column(kept, "greedy/worst/rmse"), column(kept, "ratt/worst/rmse")
         table = text.partition("## Root mean squared error, exact attacks")[2].partition("##")[0]
@@ -123,49 +124,62 @@ def test_the_page_says_what_the_rows_say(results: Path) -> None:
     steps = read_table(results / one_step.STUDY.name)
     first = select(steps, case=one_step.STUDY.cases[0].name)
     shares = [(column(first, f"{name}/worst/value") / column(first, "optimum/upper")).mean() for name in ONE_STEP]
-    assert f"| view 30 degrees | 3 | {' | '.join(f'{share:.3f}' for share in shares)} |" in text
+    assert f"| main cell | 3 | {' | '.join(f'{share:.3f}' for share in shares)} |" in text
     assert all(share <= 1 for share in shares)
 
 
-def test_the_page_is_that_of_what_was_run(results: Path, tmp_path: Path) -> None:
+def test_the_page_is_that_of_what_was_run(tmp_path: Path) -> None:
     assert "## Root mean" not in page.page(tmp_path)
-    page.write_page(results)
-    assert (results / "limited_views_tables.md").read_text(encoding="utf-8") == page.page(results)
 
 
-def rows_of_worth(effects: dict[tuple[str, str, str], float]) -> list[dict[str, str]]:
-    """Twenty trials a case whose errors are greedy's times a planner's ``effect`` in that case, and a little noise."""
+def test_the_rule_chooses_the_first_cell_in_which_both_attacks_bite(results: Path) -> None:
+    """Rows by hand; of the study's own rows, the shares are those of the definition and the page marks the choice."""
+    cases = list(bite.STUDY.cases)
+    rows = [
+        {
+            "case": case.name,
+            "kept/blinded": str(70 + 30 * (k == 4)),
+            "kept/cut": str(95 - 6 * (k > 3)),
+            "kept/both": "50",
+        }
+        for k, case in enumerate(cases)
+        for _ in range(2)
+    ]
+    assert bite.chosen(rows) == cases[5]
+    for row in read_table(results / bite.STUDY.name)[:2]:
+        shares = [float(row[f"kept/{name}"]) for name in ("blinded", "cut", "both")]
+        assert 0 <= shares[2] <= min(shares) + 1e-9
+        assert max(shares) <= 100 + 1e-9
+
+
+def test_the_main_cell_is_the_demo_and_what_the_rule_chose() -> None:
+    text = (page.ROOT / "docs" / "researchers" / "limited_views_tables.md").read_text(encoding="utf-8")
+    assert "| **45 m** | **40 m** | 60 |" in text
+    assert flights.MAIN.cases == (case_of(links=45, reach=40),)
+
+
+def rows_of_worth(effects: dict[tuple[str, str], float]) -> list[dict[str, str]]:
+    """Twenty trials a cell whose errors are greedy's times a planner's ``effect`` in that cell, and a little noise."""
     rng, rows = np.random.default_rng(0), []
+    cases = dict.fromkeys(case for cells in worth.FACTORS.values() for case in cells.values())
     for trial in range(20):
-        for links in worth.NETWORKS:
-            for view in worth.VIEWS:
-                common, row = rng.gamma(9.0, 0.1), {"links": str(links), "view": str(view), "trial": str(trial)}
-                for planner in (worth.BASE, *worth.COMPARED):
-                    factor = effects.get((planner, str(links), str(view)), 1.0)
-                    row[f"{planner}/worst/rmse"] = repr(float(common * factor * rng.lognormal(0.0, 0.02)))
-                rows.append(row)
+        for case in cases:
+            common, row = rng.gamma(9.0, 0.1), {"case": case.name, "trial": str(trial)}
+            row["greedy/worst/rmse"] = repr(float(common * rng.lognormal(0.0, 0.02)))
+            for planner in worth.COMPARED:
+                factor = effects.get((planner, case.name), 1.0)
+                row[f"{planner}/worst/rmse"] = repr(float(common * factor * rng.lognormal(0.0, 0.02)))
+            rows.append(row)
     return rows
 
 
 def test_three_sentences_say_where_it_pays() -> None:
-    """A planner that is a fifth better in two cases and a fifth worse in one is told so, and nothing else is."""
-    effects = {("maxmin", "complete", "30"): 0.8, ("maxmin", "45", "60"): 0.8, ("ratt", "45", "120"): 1.2}
-    rows = rows_of_worth(effects)
+    """A planner that is a fifth better in two cells and a fifth worse in one is told so."""
+    effects = {("maxmin", case_of().name): 0.8, ("maxmin", case_of(view=30).name): 0.8}
+    rows = rows_of_worth({**effects, ("ratt", case_of(view=120).name): 1.2})
     first, second, third = worth.sentences(rows)
-    changes = worth.changes_of(rows)
-    found = {cell: change for cell, change in changes["maxmin"].items() if outcome(change) is Outcome.PAYS}
-    assert {("complete", "30"), ("45", "60")} <= set(found)
-    assert "maxmin" in first
-    assert "30\u00b0" in first
-    assert f"to {-min(change.mean for change in found.values()):.0f} %" in first
-    costs = any(outcome(change) is Outcome.COSTS for change in changes["maxmin"].values())
-    assert ("nowhere do they cost" in second) is not costs
-    assert third.endswith("and costs with links within 45 m at views of 120\u00b0.")
-    assert len(worth.figure_of(rows).axes) == len(worth.NETWORKS)
-
-
-def test_each_planner_is_flown_in_each_case(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(worth, "STEPS", 2)
-    row = worth.measured(worth.STUDY, worth.STUDY.cases[0], Seeds.of(1, 0))
-    assert list(row) == [f"{planner}/worst/rmse" for planner in worth.STUDY.planner_names]
-    assert all(float(value) > 0 for value in row.values())
+    assert f"`maxmin` {worth.change_of(rows, case_of(), 'maxmin').show()} %" in first
+    assert second.startswith("With one factor varied, plans by `maxmin` pay at field of view 30 degrees")
+    costly = third.partition("costs accuracy at ")[2].partition(";")[0]
+    assert "field of view 120 degrees" in costly
+    assert len(worth.figure_of(rows).axes) == len(worth.FACTORS)
