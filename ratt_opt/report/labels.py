@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.report.lettering import choose_fonts, literal
-from ratt_opt.report.spots import SPOTS, best_spot
+from ratt_opt.report.spots import BESIDE, SPOTS, best_spot
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -24,6 +24,9 @@ MARK = 7.0
 
 HALO = 2.0
 """Width of the pale rim of a word [points]."""
+
+LINE = 0.6
+"""Width of the line from a word to a place that it does not touch [points]."""
 
 SIDES = {"left": 0.0, "center": 0.5, "right": 1.0}
 """Share of a word's width that lies left of where it is put."""
@@ -61,6 +64,9 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         chosen, _ = best_spot(boxes, taken, _box(axes.bbox))
         x, y, side = SPOTS[chosen]
         word.set(position=(x, y), ha=side)
+        if chosen >= BESIDE:
+            line = {"arrowstyle": "-", "color": label.colour, "linewidth": LINE, "shrinkA": 0, "shrinkB": 0}
+            axes.annotate("", label.place, (x, y), textcoords="offset points", arrowprops=line, zorder=7)
         taken.append(boxes[chosen])
 
 

@@ -11,21 +11,20 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
 
-__all__ = ["SPOTS", "Box", "best_spot"]
+__all__ = ["BESIDE", "SPOTS", "Box", "best_spot"]
 
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom of a rectangle, in any unit."""
 
-SPOTS = tuple(
-    (x * out, y * out, side)
-    for out in (1.0, 1.8, 2.8)
-    for x, y, side in (
-        *((x, y, side) for x, side in ((8, "left"), (-8, "right")) for y in (-9, 9, -3)),
-        (0, 15, "center"),
-        (0, -17, "center"),
-    )
+_AROUND = (
+    *((x, y, side) for x, side in ((8, "left"), (-8, "right")) for y in (-9, 9, -3)),
+    (0, 15, "center"),
+    (0, -17, "center"),
 )
+SPOTS = tuple((x * out, y * out, side) for out in (1.0, 1.8, 2.8) for x, y, side in _AROUND)
 """Offsets of a word's middle line from its place, upwards, the nearest first, and which end of the word is there."""
+BESIDE = len(_AROUND)
+"""Number of spots that touch the place; a word in a later one needs a line to it."""
 
 
 def best_spot(boxes: Sequence[Box], taken: Iterable[Box], inside: Box) -> tuple[int, float]:

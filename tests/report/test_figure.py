@@ -12,6 +12,7 @@ from ratt_opt.report.figure import plan_figure, save_figure
 from ratt_opt.report.page.page import report_page
 from ratt_opt.report.palette import CUT, SURVIVING
 from ratt_opt.report.picture import picture_of
+from ratt_opt.report.spots import BESIDE, SPOTS
 from ratt_opt.report.tables import report_tables
 
 
@@ -216,6 +217,22 @@ def test_names_cover_neither_each_other_nor_what_they_name():
     assert not any(a.get_window_extent().overlaps(b.get_window_extent()) for a, b in combinations(words, 2))
     places = figure.axes[0].transData.transform(grid[:11])
     assert not any(word.get_window_extent().contains(*place) for word in words for place in places)
+
+
+def test_names_that_cannot_stand_beside_their_place_have_a_line_to_it():
+    """Eleven places so close that words cannot all stand beside them: those farther out are joined to their place."""
+    spots = [*([float(x), float(y)] for y in range(3) for x in range(4) if x + y < 5), [60.0, 60.0]]
+    given = ro.InformationInput(
+        prior=[[[2.0]]] * 6, information=[[[[1.0 + e]]] * 6 for e in range(6)], robot=range(6), alpha_s=1, alpha_c=0,
+        robot_names=[f"robot number {i}" for i in range(6)], target_names=[f"landmark number {j}" for j in range(6)],
+        robot_positions=spots[:6], target_positions=spots[6:],
+    )  # fmt: skip
+    axes = ro.bound(given).plot().axes[0]
+    joined = [text.xy for text in axes.texts if getattr(text, "arrow_patch", None) is not None]
+    beside = {spot[:2] for spot in SPOTS[:BESIDE]}
+    far = [text.xy for text in axes.texts if "number" in text.get_text() and text.get_position() not in beside]
+    assert len(far) > 2
+    assert np.array_equal(joined, far)
 
 
 def test_a_file_is_the_same_each_time(drawn, tmp_path):
