@@ -56,8 +56,8 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     for label in labels:
         style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
         style["path_effects"] = halo()
-        x, y = (float(c) for c in label.place)
-        word = axes.annotate(literal(label.text), (x, y), (0, 0), textcoords="offset points", **style)
+        place = float(label.place[0]), float(label.place[1])
+        word = axes.annotate(literal(label.text), place, (0, 0), textcoords="offset points", **style)
         choose_fonts(word)
         at_place = _box(word.get_window_extent(renderer))  # to the right of the place: asked for once, as it takes long
         boxes = [_moved(at_place, x * points, y * points, side) for x, y, side in SPOTS]
@@ -66,7 +66,7 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         word.set(position=(x, y), ha=side)
         if chosen >= BESIDE:
             line = {"arrowstyle": "-", "color": label.colour, "linewidth": LINE, "shrinkA": 0, "shrinkB": 0}
-            axes.annotate("", label.place, (x, y), textcoords="offset points", arrowprops=line, zorder=7)
+            axes.annotate("", place, (x, y), textcoords="offset points", arrowprops=line, zorder=7)
         taken.append(boxes[chosen])
 
 
