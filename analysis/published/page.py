@@ -17,11 +17,11 @@ HEAD = """# Published tables, beside ours
 
 Instances and values that others published. Rows are made by one command, each search and rival with
 {seconds:g} s of the processor. `data` is a folder of your own with the published files, which are not part of this
-repository.
+repository. A table has the rows made so far; the same command goes on.
 
 `python -m analysis.published --data data --rows rows --page docs/researchers/published.md`
 """
-ABSENT = "Not made: its data were absent.\n"
+ABSENT = "No row is made yet.\n"
 
 
 def page_text(folder: Path, seconds: float) -> str:

@@ -44,4 +44,4 @@ def test_the_page_says_where_we_are_behind_and_what_is_absent(tmp_path):
     page = page_text(tmp_path, 10.0)
     assert "has the published optimum on 1 of 1" in page
     assert "We are behind on 1 rows (pmed1 0)" in page
-    assert page.count("Not made: its data were absent.") == 4
+    assert page.count("No row is made yet.") == 4
