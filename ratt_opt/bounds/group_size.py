@@ -56,6 +56,14 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     are at least ``(1 - c)`` times those of any other choice). Any other attack leaves a bait, as before. The bound is
     then the minimum of both, and 1 if ``g <= 1``: at most one robot is then greedy, and takes its best element.
 
+    Split teams. The bounds hold as well if each component plans alone while links are lost, with at least as many
+    baits as can be blinded (or all of its robots), whatever is cut later. Order the robots of a component by individual
+    value; among equals bait comes first, then the first greedy robot. That one chooses beside nothing, so it takes
+    its best element, worth no less than what any later robot has. Hence the first ``alpha_s + 1`` robots of each
+    component have their best elements. Merge these orders by value: each of the first ``alpha_s + 1`` robots of the
+    team is among the first ``alpha_s + 1`` of its component. The proof above asks no more of RATT's bait. In Coq
+    ``components_submodular``, ``components_total_curvature``.
+
     Parameters
     ----------
     g : number of robots, at least 0
