@@ -85,10 +85,11 @@ def _verdicts(rows: Rows, planner: str) -> str:
     """The varied cells in which a planner pays, costs, and makes no visible difference."""
     found: dict[Outcome, list[str]] = {kind: [] for kind in Outcome}
     for factor, cells in FACTORS.items():
-        name, _, unit = factor.rstrip("]").partition(" [")
-        for value, case in cells.items():
-            if case != MAIN:
-                found[outcome(change_of(rows, case, planner))].append(f"{name} {value} {unit}".rstrip())
+        for kind in Outcome:
+            values = [
+                v for v, case in cells.items() if case != MAIN and outcome(change_of(rows, case, planner)) is kind
+            ]
+            found[kind] += [f"{factor} {' and '.join(values)}"] if values else []
     words = {
         Outcome.PAYS: "pays",
         Outcome.COSTS: "costs accuracy",

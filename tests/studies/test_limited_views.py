@@ -179,7 +179,7 @@ def test_three_sentences_say_where_it_pays() -> None:
     rows = rows_of_worth({**effects, ("ratt", case_of(view=120).name): 1.2})
     first, second, third = worth.sentences(rows)
     assert f"`maxmin` {worth.change_of(rows, case_of(), 'maxmin').show()} %" in first
-    assert second.startswith("With one factor varied, plans by `maxmin` pay at field of view 30 degrees")
+    assert second.startswith("With one factor varied, plans by `maxmin` pay at field of view [degrees] 30")
     costly = third.partition("costs accuracy at ")[2].partition(";")[0]
-    assert "field of view 120 degrees" in costly
+    assert "field of view [degrees] 120" in costly
     assert len(worth.figure_of(rows).axes) == len(worth.FACTORS)
