@@ -124,7 +124,7 @@ def _panel(axis: Axes, points: Sequence[Point]) -> None:
     for index, case in enumerate(cases):
         line = [p for p in points if (p.n_robots, p.alpha_s, p.alpha_c, p.planner) == case]
         x, colour = [p.curvature for p in line], COLOURS[index % 5]
-        label = rf"{case[3]}, N={case[0]}, $\alpha_s$={case[1]}, $\alpha_c$={case[2]}"
+        label = rf"{case[3].upper()}, N={case[0]}, $\alpha_s$={case[1]}, $\alpha_c$={case[2]}"
         look: dict[str, Any] = {"lw": widths[index % 5], "solid_capstyle": "butt", "color": colour, "zorder": 2 + index}
         axis.plot(x, [p.upper for p in line], label=label, **look)
         axis.fill_between(x, [p.lower for p in line], [p.upper for p in line], color=colour, alpha=0.3)
