@@ -41,9 +41,9 @@ def test_an_attack_in_pieces_proves_what_one_proves(monkeypatch: pytest.MonkeyPa
     plan = ro.ratt(problem).elements
     whole, memory = ro.worst_case_attack(problem, plan), AttackMemory()
     assert whole.stop is ro.Stop.CLOSED
-    parts = [ro.worst_case_attack(problem, plan, max_nodes=0, memory=memory)]
+    parts = [ro.worst_case_attack(problem, plan, max_nodes=0, memory=memory, brief=True)]
     while parts[-1].stop is ro.Stop.NODES:
-        parts.append(ro.worst_case_attack(problem, plan, max_nodes=100 * len(parts), memory=memory))
+        parts.append(ro.worst_case_attack(problem, plan, max_nodes=100 * len(parts), memory=memory, brief=True))
         assert parts[-2].lower <= parts[-1].lower <= whole.upper * (1 + 1e-9)
         assert whole.lower * (1 - 1e-9) <= parts[-1].upper <= parts[-2].upper
     assert parts[-1].stop is ro.Stop.CLOSED
@@ -86,7 +86,7 @@ def test_thresholds_in_pieces_never_prove_less_than_before(seed: int) -> None:
     truth = brute_force_worst_case(problem, plan)
     parts = [ro.worst_case_attack(opaque, plan, max_evaluations=20, memory=memory)]
     while parts[-1].stop not in {ro.Stop.EXHAUSTED, ro.Stop.CLOSED}:
-        parts.append(ro.worst_case_attack(opaque, plan, max_nodes=1, memory=memory))
+        parts.append(ro.worst_case_attack(opaque, plan, max_nodes=1, memory=memory, brief=True))
         assert parts[-2].lower * (1 - 1e-8) <= parts[-1].lower <= truth * (1 + 1e-9) + 1e-10
         assert truth * (1 - 1e-9) <= parts[-1].upper <= parts[-2].upper
     assert parts[-1].upper == pytest.approx(truth, rel=1e-9, abs=1e-10)

@@ -82,7 +82,7 @@ def test_the_bracket_is_valid_wherever_the_search_stops(seed):
     elements = random_elements(rng, problem)
     full = ro.worst_case_attack(problem, elements)
     for nodes in range(full.nodes + 2):
-        part = ro.worst_case_attack(problem, elements, max_nodes=nodes)
+        part = ro.worst_case_attack(problem, elements, max_nodes=nodes, brief=True)
         assert part.lower <= full.upper <= part.upper
         assert attains(problem, elements, part)
         assert part.nodes <= nodes
@@ -96,7 +96,7 @@ def test_budgets_are_checked_and_kept():
     elements = random_elements(rng, problem)
     assert ro.worst_case_attack(problem, elements, time_limit=0).stop is ro.Stop.TIME
     with pytest.raises(ro.InputError, match="max_nodes"):
-        ro.worst_case_attack(problem, elements, max_nodes=-1)
+        ro.worst_case_attack(problem, elements, max_nodes=-1, brief=True)
     with pytest.raises(ro.InputError, match="time_limit"):
         ro.worst_case_attack(problem, elements, time_limit=float("nan"))
 
@@ -145,9 +145,9 @@ def test_no_result_is_better_for_the_team_than_a_known_attack(n_robots):
     worst = ro.worst_case_attack(problem, plan)
     for seed in range(3):
         known = ro.random_attack(problem, plan, seed=seed).attack
-        result = ro.worst_case_attack(problem, plan, known=known, max_nodes=0)
+        result = ro.worst_case_attack(problem, plan, known=known, max_nodes=0, brief=True)
         assert result.lower <= worst.upper <= result.upper <= problem.team_value(plan, known)
-    assert ro.worst_case_attack(problem, plan, known=worst.attack, max_nodes=0).upper == worst.upper
+    assert ro.worst_case_attack(problem, plan, known=worst.attack, max_nodes=0, brief=True).upper == worst.upper
     with pytest.raises(ro.InputError, match="attack robot"):
         ro.worst_case_attack(problem, plan, known=ro.Attack(frozenset({n_robots})))
 
@@ -220,7 +220,7 @@ def test_a_search_that_is_stopped_relies_on_no_property_of_the_objective():
     problem = ro.Problem(ro.TableFunction(values), np.arange(4), None, 1, 2)
     expected = brute_force_worst_case(problem, np.arange(4))
     for nodes in range(4):
-        result = ro.worst_case_attack(problem, np.arange(4), max_nodes=nodes)
+        result = ro.worst_case_attack(problem, np.arange(4), max_nodes=nodes, brief=True)
         assert result.lower <= expected <= result.upper
 
 

@@ -22,7 +22,7 @@ def test_few_links_and_many_blinded_are_attacked_no_less_than_by_one_annealing(f
     problem = ro.network_scenario(family, 40, 15, alpha_s=0.35, alpha_c=0.06, seed=5).problem(name)
     plan = ro.ratt(problem).elements
     annealed = annealed_value(problem, plan, seed=99)
-    result = ro.worst_case_attack(problem, plan, max_nodes=300_000)
+    result = ro.worst_case_attack(problem, plan, max_nodes=300_000, brief=True)
     assert result.upper <= annealed * (1 + 5e-4)
     assert result.lower <= annealed
 
@@ -94,7 +94,7 @@ def test_a_protected_link_of_a_complete_graph_only_helps(name):
     assert same.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
     assert same.upper == pytest.approx(worst.upper, rel=1e-9)
     held = ro.Problem(objective, plan, None, 6, 60, frozenset(), worst.attack.links)
-    result = ro.worst_case_attack(held, plan, max_nodes=200_000)
+    result = ro.worst_case_attack(held, plan, max_nodes=200_000, brief=True)
     assert worst.lower <= result.lower <= result.upper
     assert attains(held, plan, result)
 

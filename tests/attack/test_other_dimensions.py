@@ -87,7 +87,7 @@ def test_teams_of_24_close_where_prices_left_much_open(name, dimension, family):
     )
     budgets = (5, 41) if graph is None else (5, 22)
     problem = ro.Problem(OBJECTIVES[name](*data), np.arange(n_robots), graph, *budgets)
-    result = ro.worst_case_attack(problem, np.arange(n_robots), max_nodes=3_000_000)
+    result = ro.worst_case_attack(problem, np.arange(n_robots), max_nodes=3_000_000, brief=True)
     assert result.stop in {ro.Stop.CLOSED, ro.Stop.EXHAUSTED}
     assert attained(problem, np.arange(n_robots), result) == pytest.approx(result.upper, rel=1e-9)
     rng = np.random.default_rng(0)

@@ -57,8 +57,8 @@ def test_an_attack_that_goes_on_tells_of_what_is_new(monkeypatch):
     go(monkeypatch, WAYS["dual prices"])
     problem = PROBLEMS["small world"]()
     plan, memory = ro.ratt(problem).elements, AttackMemory()
-    first = ro.worst_case_attack(problem, plan, max_nodes=1000, memory=memory)
-    later = ro.worst_case_attack(problem, plan, max_nodes=1000, memory=memory)
+    first = ro.worst_case_attack(problem, plan, max_nodes=1000, memory=memory, brief=True)
+    later = ro.worst_case_attack(problem, plan, max_nodes=1000, memory=memory, brief=True)
     assert first.stop is ro.Stop.NODES
     assert [row.name for row in later.stages] == ["earlier search, resumed"]
 

@@ -39,8 +39,8 @@ def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_n
     """The time is up as soon as a better plan is looked for."""
     problem = random_scenario(robots, 6, alpha_s=blinded, alpha_c=cut, seed=0).problem()
     first = ratt(problem).elements
-    alone = worst_case_attack(problem, first, max_nodes=NODES)
-    at_once = worst_case_attack(problem, first, max_nodes=0)
+    alone = worst_case_attack(problem, first, max_nodes=NODES, brief=True)
+    at_once = worst_case_attack(problem, first, max_nodes=0, brief=True)
     search = started(problem, first)
 
     def no_time(*_: object) -> None:
