@@ -81,8 +81,8 @@ def worst_case_attack(
     ----------
     problem : N robots, E elements
     elements : (N,) element chosen for each robot
-    max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default. Listing
-        the groups of a network is no node: without a limit of time give ``brief`` too if an attack must be short
+    max_nodes, time_limit : nodes that may be explored, and seconds, checked between nodes; unlimited by default.
+        Listing the groups of a network is no node: without a limit of time give ``brief``, too, to be quick
     max_evaluations : values of an objective that is no information criterion (a few are computed whatever the limit)
     budget : an outer search's budget: its seconds and interrupts count too
     aim : stop, with ``GAP``, at an attack that leaves the team no more than this, whether or not there are worse ones
