@@ -138,6 +138,7 @@ from .bounds.guarantees import (
     all_bait_group_bound as all_bait_group_bound,
 )
 from .bounds.group_size import group_size_bound as group_size_bound
+from .bounds.heard_sets import heard_sets_bound as heard_sets_bound
 from .bounds.survivors import survivor_bound as survivor_bound
 from .bounds.instance import instance_bound as instance_bound
 from .bounds.applicable import (

@@ -29,6 +29,7 @@ else:
 
 Planner = Literal[
     "ratt",
+    "decentralised",
     "refined",
     "maxmin",
     "greedy",

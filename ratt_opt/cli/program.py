@@ -16,6 +16,7 @@ from ratt_opt._version import __version__
 from ratt_opt.cli import benching
 from ratt_opt.cli.attacking import attack
 from ratt_opt.cli.cutting import cuts
+from ratt_opt.cli.decentralising import decentralise
 from ratt_opt.cli.exit_codes import BAD_INPUT, INTERRUPTED, NO_OUTPUT, REFUTED, UNDECIDED
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
@@ -67,7 +68,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-for command in (demo, new, bound, attack, cuts, track, replay, verify, audit, schema):
+for command in (demo, new, bound, attack, cuts, decentralise, track, replay, verify, audit, schema):
     app.command(cls=_Command)(command)
 
 bench = typer.Typer(

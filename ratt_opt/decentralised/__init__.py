@@ -3,6 +3,5 @@
 Open ``agent.py`` first: one robot as a state machine without a clock. ``messages.py`` has its messages with their
 sizes, ``channel.py`` lets each arrive once and in order, ``view.py`` finds component and tree from the link records.
 ``knowledge.py`` has the data of one robot.
-``simulator.py`` drives the agents (``faults.py`` says what goes wrong), ``processes.py`` does so in real processes on
-loopback. ``plan.py`` is the door: :func:`decentralised_ratt`.
+``simulator.py`` drives the agents (``faults.py`` says what goes wrong). ``plan.py`` is the door: :func:`decentralised_ratt`.
 """

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
+from ratt_opt.bounds.heard_sets import heard_sets_bound
 from ratt_opt.budget import Budget, Stop
 from ratt_opt.decentralised.agent import Agent
 from ratt_opt.decentralised.faults import Faults
@@ -21,6 +22,7 @@ from ratt_opt.solvers.ratt import links_worth
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from ratt_opt.bounds.guarantees import Curvatures, Guarantee
     from ratt_opt.graph.communication import CommunicationGraph
     from ratt_opt.graph.threat import Threat
 
@@ -40,6 +42,8 @@ class DecentralisedPlan(Plan):
     ``decision_time`` : until then, at the radios' bandwidth and delays [s]
     ``disagreements`` : neighbours that were refused, and why
     ``faults_met`` : ``(round, kind, robots)`` of the faults that came before the end
+    ``cliques`` : sets of greedy robots in each of which all had heard each other, one way; 1 if there are none
+    ``guarantee`` : share of the optimum that the plan's worst case keeps, blinded robots without information
     ``stop`` : ``EXHAUSTED``, or why it stopped before the end; robots then keep the best element so far
     """
 
@@ -51,11 +55,19 @@ class DecentralisedPlan(Plan):
     decision_time: float
     disagreements: tuple[Disagreement, ...]
     faults_met: tuple[tuple[int, str, tuple[int, ...]], ...]
+    cliques: int
+    guarantee: Guarantee
     stop: Stop
 
 
 def decentralised_ratt(
-    problem: Problem, *, faults: Faults | None = None, seed: int = 0, time_limit: float | None = None
+    problem: Problem,
+    *,
+    faults: Faults | None = None,
+    seed: int = 0,
+    time_limit: float | None = None,
+    k: Curvatures = None,
+    c: Curvatures = None,
 ) -> DecentralisedPlan:
     """Plan by messages between neighbours, in a deterministic simulation of their radios.
 
@@ -69,6 +81,8 @@ def decentralised_ratt(
     faults : what goes wrong; nothing by default
     seed : of delays, losses and duplicates
     time_limit : seconds of computing, not of the radios
+    k, c : curvature of a submodular criterion, or total curvature, over feasible sets: the guarantee is stated for it;
+        if neither is given, for the total curvature known from theory, which is 1 for the criteria of this library
 
     Raises
     ------
@@ -77,31 +91,51 @@ def decentralised_ratt(
     Source: ratt.tex, Section VII, first direction; Algorithm 1 for the plan.
     """
     seed = check_integer("seed", seed, low=0)
+    known = {"k": k, "c": check_problem(problem).objective.most_total_curvature if (k, c) == (None, None) else c}
+    heard_sets_bound(1, **known)
     budget = Budget(time_limit)
     agents = make_agents(check_problem(problem))
     simulation = Simulation(agents, (faults or Faults()).check(problem), seed)
     stop = simulation.run(budget)
-    return plan_of(problem, simulation, stop)
+    return plan_of(problem, simulation, stop, known)
 
 
-def plan_of(problem: Problem, simulation: Simulation, stop: Stop) -> DecentralisedPlan:
-    """Collect what the agents have decided."""
+def plan_of(problem: Problem, simulation: Simulation, stop: Stop, known: Mapping[str, Curvatures]) -> DecentralisedPlan:
+    """Collect the decisions of the agents; ``known`` : the curvature of the guarantee."""
     agents, costs = simulation.agents, simulation.costs
     robots = range(problem.n_robots)
+    heard = {i: agents[i].heard for i in robots}
+    cliques = _cliques({i: others for i, others in heard.items() if others})  # who heard nobody chose as bait does
     return DecentralisedPlan(
         elements=readonly(np.array([agents[i].element for i in robots])),
         evaluations=sum(agent.evaluations for agent in agents.values()),
         bait=tuple(i for i in robots if i not in simulation.crashed and i in agents[i].bait),
         components=network_left(problem, simulation),
-        heard=tuple(agents[i].heard for i in robots),
+        heard=tuple(heard.values()),
         rounds=costs.rounds,
         messages=costs.messages,
         bytes=costs.bytes,
         decision_time=costs.time,
         disagreements=tuple(one for i in robots for one in agents[i].disagreements),
         faults_met=tuple(simulation.met),
+        cliques=cliques,
+        guarantee=heard_sets_bound(cliques, **known),
         stop=stop,
     )
+
+
+def _cliques(heard: Mapping[int, tuple[int, ...]]) -> int:
+    """Number of cliques that cover the given robots, first fit in the order of how many each has heard; at least 1."""
+    found: list[list[int]] = []
+    for i in sorted(heard, key=lambda robot: (len(heard[robot]), robot)):
+        known = set(heard[i])
+        for clique in found:
+            if known.issuperset(clique):
+                clique.append(i)
+                break
+        else:
+            found.append([i])
+    return max(len(found), 1)
 
 
 def network_left(problem: Problem, simulation: Simulation) -> tuple[tuple[int, ...], ...]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_integer
 from ratt_opt.budget import uninterrupted
+from ratt_opt.decentralised.plan import decentralised_ratt
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import get_player
 from ratt_opt.planners.registry import PUBLISHED
@@ -99,6 +100,7 @@ class RandomPlanner:
 
 PLANNERS: dict[str, Planner] = {
     "ratt": ratt,
+    "decentralised": decentralised_ratt,
     "maxmin": MaxMinPlanner(),
     "refined": RefinedPlanner(),
     "greedy": greedy,

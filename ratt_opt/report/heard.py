@@ -1,0 +1,106 @@
+"""Picture of a plan by messages: who heard whom before choosing, and which robots planned together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import networkx as nx
+import numpy as np
+
+from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
+from ratt_opt.running.interrupts import imported_whole
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.decentralised.plan import DecentralisedPlan
+    from ratt_opt.problem import Problem
+    from ratt_opt.report.description import Description
+
+__all__ = ["heard_figure"]
+
+MOST_CELLS_NAMED = 30
+"""Most robots whose numbers stand beside the table."""
+
+
+def heard_figure(problem: Problem, plan: DecentralisedPlan, known: Description) -> Figure:
+    """Return the figure: the network with bait, components and lost links; beside it the table of who heard whom."""
+    figure: Figure = imported_whole("matplotlib.figure").Figure(figsize=(13, 6.8), layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
+    _draw_network(left, problem, plan, known)
+    _draw_table(right, problem, plan)
+    parts = len(plan.components)
+    figure.suptitle(
+        f"Planned by messages: {plan.rounds} rounds, {plan.messages} messages, {plan.bytes} bytes, "
+        f"{plan.decision_time:.2f} s of the radios.\n"
+        f"{parts} component{'s' * (parts > 1)}; at least {plan.guarantee.value:.3g} of the optimum after any attack.",
+        fontsize=11.5,
+    )
+    return figure
+
+
+def _draw_network(axes: Axes, problem: Problem, plan: DecentralisedPlan, known: Description) -> None:
+    after = known.poses_after
+    is_layout = after is None
+    places = _layout(problem) if after is None else after[plan.elements][:, :2]
+    home = {i: group for group in plan.components for i in group}
+    lost = {tuple(sorted(who)) for _, kind, who in plan.faults_met if kind == "cut"}
+    links = sorted(problem.communication.links)
+    for kind, colour, style, label in (
+        (False, SURVIVING, "solid", "link"),
+        (True, CUT, (0, (4, 3)), "link lost while planning"),
+    ):
+        chosen = [(i, j) for i, j in links if ((i, j) in lost or home[i] != home[j]) is kind]
+        for n, (i, j) in enumerate(chosen):
+            ends = places[[i, j]].T
+            axes.plot(*ends, color=colour, linestyle=style, lw=1, zorder=1, label=label if n == 0 else None)
+    gone = {kind: {who[0] for _, met, who in plan.faults_met if met == kind} for kind in ("blinded", "crashed")}
+    greedy = [i for i in range(problem.n_robots) if i not in plan.bait]
+    for robots, colour, marker, label in (
+        (greedy, INK, "o", "robot that chose by auction"),
+        (plan.bait, TARGET, "s", "bait"),
+        (sorted(gone["blinded"]), BLINDED, "x", "blinded"),
+        (sorted(gone["crashed"]), LOST, "D", "crashed"),
+    ):
+        if len(robots):
+            x, y = places[list(robots)].T
+            axes.scatter(x, y, c=colour, marker=marker, s=46, zorder=3, label=label)
+    for i, place in enumerate(places):
+        axes.annotate(str(i), place, xytext=(5, 5), textcoords="offset points", fontsize=8)
+    axes.set_aspect("equal", adjustable="datalim")
+    if is_layout:
+        axes.set_xticks([])
+        axes.set_yticks([])
+        axes.set_xlabel("no places are known: a layout of the communication graph")
+    else:
+        axes.set_xlabel("x [m]")
+        axes.set_ylabel("y [m]")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=8.5)
+
+
+def _layout(problem: Problem) -> FloatArray:
+    graph = nx.Graph(sorted(problem.communication.links))
+    graph.add_nodes_from(range(problem.n_robots))
+    placed = nx.spring_layout(graph, seed=0)
+    return np.array([placed[i] for i in range(problem.n_robots)])
+
+
+def _draw_table(axes: Axes, problem: Problem, plan: DecentralisedPlan) -> None:
+    n = problem.n_robots
+    order = sorted(range(n), key=lambda i: (i not in plan.bait, len(plan.heard[i]), i))
+    place = {robot: k for k, robot in enumerate(order)}
+    dots = [(place[j], place[i]) for i in range(n) for j in plan.heard[i]]
+    if dots:
+        x, y = np.array(dots).T
+        axes.scatter(x, y, c=SURVIVING, marker="s", s=min(60, 5000 / n**1.4))
+    axes.set_xlim(-0.7, n - 0.3)
+    axes.set_ylim(n - 0.3, -0.7)
+    if n <= MOST_CELLS_NAMED:
+        axes.set_xticks(range(n), list(map(str, order)))
+        axes.set_yticks(range(n), list(map(str, order)))
+    axes.set_xlabel("robot whose choice was heard")
+    axes.set_ylabel("robot that chose (bait first, then by auction)")
+    axes.set_title("who had heard whom when choosing", fontsize=10.5)
+    axes.set_aspect("equal")

@@ -1,0 +1,76 @@
+"""The guarantee for heard sets, by brute force over plans and robot sets, and at the instance that attains it."""
+
+from itertools import combinations, product
+
+import networkx as nx
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt import Faults, decentralised_ratt, heard_sets_bound
+from tests.decentralised.teams import breaking_faults, team
+
+
+@pytest.mark.parametrize(("k", "value"), [(0.3, 0.595), (0.5, 0.375), (0.8, 0.12)])
+def test_two_components_have_the_known_values(k, value):
+    assert heard_sets_bound(2, k=k) == pytest.approx(value)
+
+
+@pytest.mark.parametrize("k", [0.0, 0.25, 1.0])
+def test_one_clique_is_no_better_than_the_pattern_free_bound(k):
+    assert heard_sets_bound(1, k=k) == pytest.approx(float(ro.pattern_free_bound(k=k)))
+    assert heard_sets_bound(3, c=k) == pytest.approx(float(ro.pattern_free_bound(c=k)))
+    assert heard_sets_bound(10**6, k=k) == pytest.approx((1 - k) ** 2, abs=1e-5)
+
+
+def test_any_group_of_a_broken_team_keeps_its_share():
+    checked = 0
+    for seed in range(60):
+        rng = np.random.default_rng([7, seed])
+        problem = team(rng, objective="logdet" if seed % 2 else "trace", most=4)
+        f = problem.objective
+        plan = decentralised_ratt(problem, faults=breaking_faults(rng, problem), seed=seed)
+        blind = {who[0] for _, kind, who in plan.faults_met if kind == "blinded"}
+        if blind:
+            continue  # the function is another one then
+        c = ro.total_curvature(f, problem.robot)
+        bounds = [heard_sets_bound(plan.cliques, c=c)]
+        if f.is_submodular:
+            bounds.append(heard_sets_bound(plan.cliques, k=ro.curvature(f, problem.robot)))
+        share = max(map(float, bounds))
+        assert decentralised_ratt(problem, c=c).guarantee <= 1
+        for size in range(1, problem.n_robots + 1):
+            for robots in combinations(range(problem.n_robots), size):
+                best = max(f(list(chosen)) for chosen in product(*(problem.choices[i] for i in robots)))
+                assert f(plan.elements[list(robots)]) >= share * best - 1e-9
+                checked += share > 0
+    assert checked > 100
+
+
+def test_cliques_are_the_components_with_greedy_robots():
+    rng = np.random.default_rng(2)
+    problem = team(rng, 6, objective="trace")
+    nobody = ro.Problem(problem.objective, problem.robot, problem.graph, 0, 0)
+    links = sorted(nobody.communication.links)
+    assert decentralised_ratt(nobody).cliques == 1
+    split = decentralised_ratt(nobody, faults=Faults(cuts=tuple((0, i, j) for i, j in links)))
+    assert split.cliques == 1  # a robot that heard nobody has its individually best element, as bait has
+    assert len(split.components) == 6
+    assert len(links) > 5
+
+
+def test_two_pairs_that_plan_apart_are_two_cliques():
+    prior, information = np.eye(2)[None], np.tile(np.eye(2), (8, 1, 1, 1))
+    path = nx.path_graph(4)
+    problem = ro.Problem(ro.LogDetObjective(prior, information), np.repeat(np.arange(4), 2), path, 0, 0)
+    assert decentralised_ratt(problem).cliques == 1
+    apart = decentralised_ratt(problem, faults=Faults(cuts=((0, 1, 2),)), k=0.5)
+    assert apart.components == ((0, 1), (2, 3))
+    assert (apart.cliques, apart.guarantee) == (2, 0.375)
+
+
+def test_what_no_guarantee_is_about_is_refused():
+    with pytest.raises(ro.InputError, match="cliques"):
+        heard_sets_bound(0, k=0.5)
+    with pytest.raises(ro.InputError, match="one at a time"):
+        decentralised_ratt(team(np.random.default_rng(0), 3), k=0.1, c=0.1)
