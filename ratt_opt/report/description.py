@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.problem import Problem
 
-__all__ = ["Description", "View", "describe", "named", "views_of"]
+__all__ = ["Description", "FieldOfView", "describe", "named", "views_of"]
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class FieldOfView:
     """A sensor's field of view: full ``angle`` about the heading [rad] and ``reach`` [m]; ``None`` for no limit."""
 
     angle: float | None
@@ -45,7 +45,7 @@ class Description:
     poses: FloatArray | None = None
     poses_after: FloatArray | None = None
     targets: FloatArray | None = None
-    views: tuple[View, ...] | None = None
+    views: tuple[FieldOfView, ...] | None = None
 
     def robot(self, i: int) -> str:
         """Robot ``i`` for people: its number, and its name if that says more."""
@@ -103,11 +103,11 @@ def _poses_after(source: InformationInput) -> FloatArray | None:
     return places if places is None or headings is None else np.column_stack([places, headings])
 
 
-def views_of(scenario: Scenario) -> tuple[View, ...]:
+def views_of(scenario: Scenario) -> tuple[FieldOfView, ...]:
     """(N,) limits of each robot's sensor."""
     sensors = [robot.sensor or scenario.sensor for robot in scenario.robots]
     limited = [sensor.sensor if isinstance(sensor, RangeBearing) else sensor for sensor in sensors]
-    return tuple(View(getattr(one, "field_of_view", None), getattr(one, "max_range", None)) for one in limited)
+    return tuple(FieldOfView(getattr(one, "field_of_view", None), getattr(one, "max_range", None)) for one in limited)
 
 
 def _array(places: tuple[tuple[float, float], ...] | None) -> FloatArray | None:

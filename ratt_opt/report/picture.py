@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.report.description import View, describe, named
+from ratt_opt.report.description import FieldOfView, describe, named
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -41,7 +41,7 @@ class Picture:
     weights: FloatArray | None
     prior: FloatArray | None
     posterior: FloatArray | None
-    views: tuple[View, ...] | None
+    views: tuple[FieldOfView, ...] | None
     watched: BoolArray | None
     links: frozenset[tuple[int, int]]
     protected_robots: frozenset[int]
@@ -113,8 +113,8 @@ def _plane(source: object, dimension: int) -> tuple[Any, ...] | None:
     return (slice(None), *np.ix_(metres, metres)) if len(metres) == 2 else None
 
 
-def _views(known: Description) -> tuple[View, ...] | None:
-    limited = known.views is not None and any(view != View(None, None) for view in known.views)
+def _views(known: Description) -> tuple[FieldOfView, ...] | None:
+    limited = known.views is not None and any(view != FieldOfView(None, None) for view in known.views)
     return known.views if limited else None
 
 

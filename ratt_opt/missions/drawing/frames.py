@@ -11,7 +11,7 @@ from ratt_opt.report.description import views_of
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.missions.result import FlownMission, MissionStep
-    from ratt_opt.report.description import View
+    from ratt_opt.report.description import FieldOfView
 
 __all__ = ["MOST_LINKS", "SIGMAS", "ellipse_of", "frames_of", "limits"]
 
@@ -38,7 +38,7 @@ def _across(mission: FlownMission) -> float:
     return float(np.linalg.norm(np.ptp(places, axis=0)))
 
 
-def _field(view: View, endless: float) -> list[float]:
+def _field(view: FieldOfView, endless: float) -> list[float]:
     """Full angle [rad] of a field of view, and the radius at which it is drawn [m]."""
     return [2 * np.pi if view.angle is None else view.angle, endless if view.reach is None else view.reach]
 
