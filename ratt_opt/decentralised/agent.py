@@ -33,7 +33,7 @@ import numpy as np
 from ratt_opt.decentralised.channel import Channel
 from ratt_opt.decentralised.knowledge import AwardedSum, Disagreement, Knowledge
 from ratt_opt.decentralised.messages import VERSION, Award, BaitChoice, BaitList, Bid, Item, LinkRecord, Packet
-from ratt_opt.decentralised.view import View, digest, live_component, make_view
+from ratt_opt.decentralised.view import ComponentView, digest, live_component, make_view
 from ratt_opt.setfunctions.information import triangles
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ class _Progress:
     ``has_sent`` : the list, or this round's bid.
     """
 
-    view: View
+    view: ComponentView
     name: bytes
     alpha: int
     branches: dict[int, int]

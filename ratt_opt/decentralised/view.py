@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.decentralised.messages import LinkRecord
 
-__all__ = ["View", "digest", "live_component", "make_view"]
+__all__ = ["ComponentView", "digest", "live_component", "make_view"]
 
 
 def digest(*parts: object) -> bytes:
@@ -29,7 +29,7 @@ def digest(*parts: object) -> bytes:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class View:
+class ComponentView:
     """One component, as all of its robots see it.
 
     ``members`` : ascending. ``threat`` : the component's links with what an attack on it may do, robots numbered by
@@ -77,8 +77,10 @@ def live_component(records: Mapping[int, LinkRecord], start: int) -> dict[int, l
     return found
 
 
-def make_view(near: Mapping[int, list[int]], records: Mapping[int, LinkRecord], alpha_s: int, alpha_c: int) -> View:
-    """View of a component from the live neighbours of its members; budgets are clamped to what can be attacked."""
+def make_view(
+    near: Mapping[int, list[int]], records: Mapping[int, LinkRecord], alpha_s: int, alpha_c: int
+) -> ComponentView:
+    """Component from the live neighbours of its members; budgets are clamped to what can be attacked."""
     members = tuple(sorted(near))
     place = {i: k for k, i in enumerate(members)}
     links = sorted((i, j) for i in members for j in near[i] if i < j)
@@ -94,7 +96,7 @@ def make_view(near: Mapping[int, list[int]], records: Mapping[int, LinkRecord], 
     root = _middle(near, members[0])
     parent = _tree(near, root)
     order = (root, *parent)
-    return View(digest(members, links, kept, blinded), members, threat, root, parent, order)
+    return ComponentView(digest(members, links, kept, blinded), members, threat, root, parent, order)
 
 
 def _tree(near: Mapping[int, list[int]], root: int) -> dict[int, int]:

@@ -12,7 +12,8 @@ from typing import Any
 __all__ = ["OUTPUTS", "output_schema"]
 
 OUTPUTS = (
-    *("report", "certificate", "cut-certificate", "attack", "cuts", "mission", "verification", "new"),
+    *("report", "certificate", "cut-certificate", "attack", "cuts", "decentralised"),
+    *("mission", "verification", "new"),
     *("audit", "audit-summary"),
 )
 """The outputs; a schema's ``format`` names each. The inputs' schemas are made from their records instead."""

@@ -6,6 +6,7 @@ import json
 import os
 from typing import TYPE_CHECKING, Any
 
+import jsonschema
 import pytest
 
 from ratt_opt import (
@@ -23,6 +24,7 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.cli import run
+from ratt_opt.report.schemas import output_schema
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
 from tests.certificates.engine import step
 from tests.cli.refusal import refused
@@ -405,6 +407,7 @@ def test_decentralise_writes_plan_costs_and_picture(tmp_path: Path, capsys: pyte
     assert run([*words, "--curvature-time", "0.2", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document == json.loads((out / "decentralised.json").read_text())
+    jsonschema.validate(document, output_schema("decentralised"))
     assert document["components"] == [[0, 1, 2, 3], [4]]
     assert [fault["kind"] for fault in document["faults_met"]] == ["cut", "crashed"]
     assert {file.name for file in out.iterdir()} == {f"decentralised.{end}" for end in ("json", "png", "svg")}
