@@ -122,11 +122,12 @@ def _lines(plan: "DecentralisedPlan") -> list[str]:
     groups = "; ".join(" ".join(map(str, group)) for group in plan.components)
     met = ", ".join(f"{kind} {'-'.join(map(str, who))} (round {at})" for at, kind, who in plan.faults_met)
     needs = "; ".join(plan.guarantee.hypotheses)
+    share = f"{plan.guarantee.value:.4g}" if plan.guarantee.value > 0 else "curvature proves no share"
     return [
         f"elements: {' '.join(map(str, plan))}",
         f"bait: {' '.join(map(str, plan.bait)) or 'none'}",
         f"components that planned together: {groups}",
         f"{plan.rounds} rounds, {plan.messages} messages, {plan.bytes} bytes, decided after {plan.decision_time:.3f} s",
-        f"guarantee: {plan.guarantee.value:.4g} of the optimum after any attack ({needs})",
+        f"guarantee: {share} of the optimum after any attack ({needs})",
         *([f"faults: {met}"] if met else []),
     ]

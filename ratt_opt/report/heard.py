@@ -31,11 +31,12 @@ def heard_figure(problem: Problem, plan: DecentralisedPlan, known: Description) 
     left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
     _draw_network(left, problem, plan, known)
     _draw_table(right, problem, plan)
-    parts = len(plan.components)
+    parts, share = len(plan.components), plan.guarantee.value
+    kept = f"at least {share:.3g} of the optimum after any attack" if share > 0 else "its curvature proves no share"
     figure.suptitle(
         f"Planned by messages: {plan.rounds} rounds, {plan.messages} messages, {plan.bytes} bytes, "
         f"{plan.decision_time:.2f} s of the radios.\n"
-        f"{parts} component{'s' * (parts > 1)}; at least {plan.guarantee.value:.3g} of the optimum after any attack.",
+        f"{parts} component{'s' * (parts > 1)}; {kept}.",
         fontsize=11.5,
     )
     return figure
