@@ -42,6 +42,10 @@ if TYPE_CHECKING:
 __all__ = ["Agent", "State"]
 
 
+COMPONENT = "component"
+"""What a disagreement is about if both robots know the same links and make different components of them."""
+
+
 class State(Enum):
     """Stage of an agent, with a sentence about it."""
 
@@ -95,6 +99,7 @@ class Agent:
         self.heard: tuple[int, ...] = ()
         self._objective = knowledge.objective
         self._channels = {i: Channel() for i in knowledge.neighbours}
+        self._left: dict[int, Channel] = {}  # to robots that it refused, or that refused it, until both know
         self._records: dict[int, LinkRecord] = {}
         self._stamp = 0
         self._missing: int | None = None
@@ -122,7 +127,7 @@ class Agent:
     @property
     def is_idle(self) -> bool:
         """True if it needs no tick: all that it sent has arrived, and it owes no answer."""
-        return all(channel.is_idle for channel in self._channels.values())
+        return all(channel.is_idle for channel in (*self._channels.values(), *self._left.values()))
 
     @property
     def bait(self) -> tuple[int, ...]:
@@ -139,20 +144,26 @@ class Agent:
         """Robots to which it has a live link."""
         return tuple(self._channels)
 
+    @property
+    def addressees(self) -> tuple[int, ...]:
+        """Robots to which it may have a packet to send: neighbours, and those refused until both know."""
+        return (*self._channels, *self._left)
+
     # ------------------------------------------------------------------ what a driver calls
 
     def send(self, neighbour: int) -> Packet | None:
         """Packet for a neighbour; ``None`` if there is none to send now."""
-        channel = self._channels.get(neighbour)
+        channel = self._channels.get(neighbour, self._left.get(neighbour))
         taken = None if channel is None else channel.take()
         if channel is None or taken is None:
             return None
         return Packet(self.version, self.common, self.robot, taken[0], channel.received, taken[1])
 
     def receive(self, packet: Packet) -> None:
-        """Take a packet; those of robots that are no neighbours any more are ignored."""
+        """Take a packet. A robot that is refused, or refused this one, is answered until it knows; others are not."""
         channel = self._channels.get(packet.sender)
         if channel is None:
+            self._answer_left(packet)
             return
         if packet.version != self.version:
             self.refuse(packet.sender, "version of the messages", str(self.version), str(packet.version))
@@ -165,11 +176,25 @@ class Agent:
 
     def tick(self) -> None:
         """Let time pass: items that may be lost are sent again."""
-        for channel in self._channels.values():
+        for channel in (*self._channels.values(), *self._left.values()):
             channel.tick()
+
+    def _answer_left(self, packet: Packet) -> None:
+        """Take what a robot without a live link has received, and answer it if it sent something."""
+        left = self._left.get(packet.sender)
+        if left is None:
+            return
+        if (packet.version, packet.common) == (self.version, self.common):
+            left.accept(packet)
+        if packet.items:
+            left.answer()
 
     def lose(self, neighbour: int) -> None:
         """Do without the link to a neighbour, which is lost for good."""
+        self._left.pop(neighbour, None)
+        self._drop(neighbour)
+
+    def _drop(self, neighbour: int) -> None:
         if self._channels.pop(neighbour, None) is not None:
             own = self._records[self.robot]
             left = tuple(i for i in own.neighbours if i != neighbour)
@@ -184,9 +209,18 @@ class Agent:
             self._change(replace(own, number=own.number + 1, blinded=True))
 
     def refuse(self, neighbour: int, about: str, own: str, other: str) -> None:
-        """Stop listening to a neighbour, and note why."""
+        """Stop listening to a neighbour, note why, and let it know: by any packet, or by the record without it."""
         self.disagreements.append(Disagreement(self.robot, neighbour, about, own, other))
-        self.lose(neighbour)
+        channel = self._channels.get(neighbour)
+        if channel is None:
+            return
+        self._drop(neighbour)
+        if about == COMPONENT:
+            channel.add(self._records[self.robot])
+        else:
+            channel = channel.closed()
+            channel.answer()
+        self._left[neighbour] = channel
 
     # ------------------------------------------------------------------ flooding
 
@@ -215,7 +249,8 @@ class Agent:
         if known is None or item.number > known.number:
             self._keep(item, sender)
             if item.robot in self._channels and self.robot not in item.neighbours:
-                self.lose(item.robot)
+                self._left[item.robot] = self._channels[item.robot].closed()
+                self._drop(item.robot)
 
     def _look(self) -> None:
         """Find the component if no record of it is missing, and plan anew if it is another one."""
@@ -246,7 +281,7 @@ class Agent:
         now = self._progress
         if now is None or item.view != now.name:
             if item.stamp >= self._stamp:  # its author knew the same records: it should have had the same view
-                self.refuse(sender, "component", "none" if now is None else now.name.hex(), item.view.hex())
+                self.refuse(sender, COMPONENT, "none" if now is None else now.name.hex(), item.view.hex())
         elif isinstance(item, BaitList):
             now.lists[sender] = item
             self._list()

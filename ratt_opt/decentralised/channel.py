@@ -32,6 +32,16 @@ class Channel:
         """True if all items have arrived there, and the other robot knows what has arrived here."""
         return self._arrived == len(self._items) and not self._owes_answer
 
+    def closed(self) -> Channel:
+        """The channel without anything to send: it only answers what still comes."""
+        closed = Channel()
+        closed.received = self.received
+        return closed
+
+    def answer(self) -> None:
+        """Send a packet soon, if only an empty one."""
+        self._must_answer = True
+
     def add(self, item: Item) -> None:
         """Append an item to send."""
         self._items.append(item)

@@ -228,9 +228,9 @@ class _Robot:
 
     def _flush(self, agent: Agent) -> None:
         """Write all packets that are ready, and tell the parent of an end that it does not know."""
-        for other in agent.neighbours:
+        for other in agent.addressees:
             _, writer = self.streams[other]
-            while (packet := agent.send(other)) is not None:
+            while not writer.is_closing() and (packet := agent.send(other)) is not None:
                 data = encode(packet)
                 writer.write(LENGTH.pack(len(data)) + data)
                 self.messages += 1

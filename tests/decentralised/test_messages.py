@@ -20,7 +20,7 @@ def deliver_all(agents, seen=None):
     while moved:
         moved = False
         for agent in agents.values():
-            for other in agent.neighbours:
+            for other in agent.addressees:
                 packet = agent.send(other)
                 if packet is not None:
                     moved = True
