@@ -189,10 +189,10 @@ def test_listed_groups_with_triples_decide_what_is_kept(seed, few, monkeypatch):
     prices = np.array(degree, dtype=np.int64) * network.unit  # every group keeps at most half of it
     everything = groups_above(network, prices, size, -int(prices.sum()) - 1, 10**4, Budget()).groups
     kept = network.total - truth
-    label = partition_that_keeps(network, everything, prices, kept, Budget())
+    label = partition_that_keeps(network, everything, prices, kept, Budget()).label
     assert label is not None
     assert network.cut_of(label) == truth
-    assert partition_that_keeps(network, everything, prices, kept + 1, Budget()) is None
+    assert partition_that_keeps(network, everything, prices, kept + 1, Budget()).label is None
 
 
 def test_a_gap_of_prices_is_closed_by_triples_and_covers(monkeypatch):
