@@ -27,6 +27,7 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin.adversary import worst_case_attack_unrounded
 from tests.solvers.maxmin.engine import BLIND, UNLISTED, exact_attacks, link_attacks
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
@@ -125,7 +126,7 @@ def test_an_interrupt_that_an_inner_attack_turned_into_a_bracket_is_heard(
 
     def interrupted(*given: Any, **limits: Any) -> AttackResult:
         asked.append(given)
-        return replace(worst_case_attack(*given, **limits), stop=Stop.INTERRUPTED)
+        return replace(worst_case_attack_unrounded(*given, **limits), stop=Stop.INTERRUPTED)
 
     go(monkeypatch, exact_attacks(interrupted))
     outer = Budget()
