@@ -43,7 +43,7 @@ __all__ = ["Agent", "State"]
 
 
 COMPONENT = "component"
-"""What a disagreement is about if both robots know the same links and make different components of them."""
+"""Subject of a disagreement of robots that know the same links and make different components of them."""
 
 
 class State(Enum):
