@@ -14,7 +14,7 @@ import sys
 import tarfile
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from analysis.fresh import installed, run_alone
 
@@ -67,7 +67,8 @@ def build(kind: str, project: Path, out: Path) -> Path:
 def unpacked(source: Path, place: Path) -> Path:
     """Unpack a source distribution under ``place`` and return its only folder."""
     with tarfile.open(source) as archive:
-        archive.extractall(place / "unpacked", filter="data")
+        safe: dict[str, Any] = {"filter": "data"} if hasattr(tarfile, "data_filter") else {}  # since Python 3.11.4
+        archive.extractall(place / "unpacked", **safe)
     (folder,) = (place / "unpacked").iterdir()
     return folder
 
