@@ -29,8 +29,4 @@ def element_bytes(problem: Problem, elements: int = 1) -> int:
 
 def neighbours(problem: Problem) -> list[list[int]]:
     """Robots in reach of each robot, ascending."""
-    near: list[list[int]] = [[] for _ in range(problem.n_robots)]
-    for i, j in sorted(problem.communication.links):
-        near[i].append(j)
-        near[j].append(i)
-    return [sorted(others) for others in near]
+    return [list(problem.communication.neighbours_of(i)) for i in range(problem.n_robots)]

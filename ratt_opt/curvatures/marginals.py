@@ -182,6 +182,11 @@ class MarginalBrackets(ABC):
         self.most = single.copy() if against_own else np.full(len(single), np.inf)
         self.seen_least, self.seen_most = single.copy(), single.copy()
         self._done: BoolArray = np.zeros(len(single), dtype=np.bool_)
+        self._prepare()
+
+    @abstractmethod
+    def _prepare(self) -> None:
+        """Make what the searches keep."""
 
     def run(self) -> Stop:
         """Search until the deciding ratio is known within the gap, or the budget is spent."""

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from ratt_opt.bounds.guarantees import Curvatures, Guarantee
-    from ratt_opt.graph.communication import CommunicationGraph
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["DecentralisedPlan", "decentralised_ratt", "knowledge_of", "make_agents", "network_left"]
@@ -90,11 +89,11 @@ def decentralised_ratt(
 
     Source: ratt.tex, Section VII, first direction; Algorithm 1 for the plan.
     """
-    seed = check_integer("seed", seed, low=0)
-    known = {"k": k, "c": check_problem(problem).objective.most_total_curvature if (k, c) == (None, None) else c}
+    problem, seed = check_problem(problem), check_integer("seed", seed, low=0)
+    known = {"k": k, "c": problem.objective.most_total_curvature if (k, c) == (None, None) else c}
     heard_sets_bound(1, **known)
     budget = Budget(time_limit)
-    agents = make_agents(check_problem(problem))
+    agents = make_agents(problem)
     simulation = Simulation(agents, (faults or Faults()).check(problem), seed)
     stop = simulation.run(budget)
     return plan_of(problem, simulation, stop, known)
@@ -159,8 +158,8 @@ def make_agents(problem: Problem) -> dict[int, Agent]:
     if problem.n_robots > MOST_ROBOTS:
         raise InputError("problem", f"must have at most {MOST_ROBOTS} robots for messages", problem.n_robots)
     worth = lru_cache(maxsize=None)(links_worth)  # robots that know the same links find the same number
-    near = _neighbours(problem.communication)
-    return {i: Agent(knowledge_of(problem, i, near[i], worth)) for i in range(problem.n_robots)}
+    near = problem.communication.neighbours_of
+    return {i: Agent(knowledge_of(problem, i, near(i), worth)) for i in range(problem.n_robots)}
 
 
 def knowledge_of(
@@ -179,11 +178,3 @@ def knowledge_of(
         alpha_c=problem.alpha_c,
         links_worth=worth,
     )
-
-
-def _neighbours(graph: CommunicationGraph) -> Mapping[int, tuple[int, ...]]:
-    near: dict[int, list[int]] = {i: [] for i in range(graph.n_robots)}
-    for i, j in sorted(graph.links):
-        near[i].append(j)
-        near[j].append(i)
-    return {i: tuple(sorted(others)) for i, others in near.items()}

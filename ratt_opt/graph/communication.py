@@ -112,7 +112,11 @@ class CommunicationGraph:
 
     def links_of(self, robot: int) -> frozenset[Link]:
         """The links of one robot."""
-        return frozenset((min(robot, j), max(robot, j)) for j in _bits(self._neighbours[robot]))
+        return frozenset((min(robot, j), max(robot, j)) for j in self.neighbours_of(robot))
+
+    def neighbours_of(self, robot: int) -> tuple[int, ...]:
+        """The robots linked to one, ascending."""
+        return tuple(_bits(self._neighbours[robot]))
 
 
 def _components(neighbours: Sequence[int], robots: int) -> tuple[frozenset[int], ...]:

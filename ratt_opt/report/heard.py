@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import networkx as nx
 import numpy as np
 
+from ratt_opt.report.map import label_places
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 from ratt_opt.running.interrupts import imported_whole
 
@@ -70,15 +71,7 @@ def _draw_network(axes: Axes, problem: Problem, plan: DecentralisedPlan, known: 
             axes.scatter(x, y, c=colour, marker=marker, s=46, zorder=3, label=label)
     for i, place in enumerate(places):
         axes.annotate(str(i), place, xytext=(5, 5), textcoords="offset points", fontsize=8)
-    axes.set_aspect("equal", adjustable="datalim")
-    if is_layout:
-        axes.set_xticks([])
-        axes.set_yticks([])
-        axes.set_xlabel("no places are known: a layout of the communication graph")
-    else:
-        axes.set_xlabel("x [m]")
-        axes.set_ylabel("y [m]")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=8.5)
+    label_places(axes, is_layout=is_layout)
 
 
 def _layout(problem: Problem) -> FloatArray:

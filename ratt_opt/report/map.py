@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.report.picture import Picture
 
-__all__ = ["MANY_ROBOTS", "draw_map", "name_things"]
+__all__ = ["MANY_ROBOTS", "draw_map", "label_places", "name_things"]
 
 SIGMAS = 2.4477
 """Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
@@ -35,18 +35,24 @@ def draw_map(axes: Axes, picture: Picture) -> None:
     if picture.targets is not None:
         _draw_targets(axes, picture)
     _draw_robots(axes, picture)
-    axes.set_aspect("equal", adjustable="datalim")
     axes.autoscale_view()
     axes.margins(0.06)
-    if picture.is_layout:
+    if not picture.is_layout:
+        axes.grid(visible=True, color="#eeeeee", linewidth=0.8)
+    axes.set_axisbelow(True)
+    label_places(axes, is_layout=picture.is_layout)
+
+
+def label_places(axes: Axes, *, is_layout: bool) -> None:
+    """Label a map whose places are in metres, or of a layout; the legend stands below."""
+    axes.set_aspect("equal", adjustable="datalim")
+    if is_layout:
         axes.set_xticks([])
         axes.set_yticks([])
         axes.set_xlabel("no places are known: a layout of the communication graph")
     else:
         axes.set_xlabel("x [m]")
         axes.set_ylabel("y [m]")
-        axes.grid(visible=True, color="#eeeeee", linewidth=0.8)
-    axes.set_axisbelow(True)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False, fontsize=8.5)
 
 

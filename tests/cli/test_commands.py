@@ -382,29 +382,11 @@ def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_decentralise_writes_plan_costs_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, out = str(tmp_path / "s.json"), tmp_path / "out"
-    assert (
-        run(
-            [
-                "new",
-                "--robots",
-                "5",
-                "--targets",
-                "4",
-                "--sensing-attacks",
-                "1",
-                "--link-attacks",
-                "2",
-                "--seed",
-                "1",
-                "--out",
-                file,
-            ]
-        )
-        == 0
-    )
+    words = "--robots 5 --targets 4 --sensing-attacks 1 --link-attacks 2 --seed 1 --out"
+    assert run(["new", *words.split(), file]) == 0
     capsys.readouterr()
-    words = ["decentralise", file, "--out", str(out), "--loss", "0.1", "--cut", "2:0-1", "--crash", "3:4"]
-    assert run([*words, "--curvature-time", "0.2", "--json"]) == 0
+    command = ["decentralise", file, "--out", str(out), "--loss", "0.1", "--cut", "2:0-1", "--crash", "3:4"]
+    assert run([*command, "--curvature-time", "0.2", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document == json.loads((out / "decentralised.json").read_text())
     jsonschema.validate(document, output_schema("decentralised"))
@@ -421,26 +403,8 @@ def test_faults_that_cannot_be_are_refused_before_anything_is_written(
     option: str, value: str, named: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = str(tmp_path / "s.json")
-    assert (
-        run(
-            [
-                "new",
-                "--robots",
-                "4",
-                "--targets",
-                "4",
-                "--sensing-attacks",
-                "1",
-                "--link-attacks",
-                "2",
-                "--seed",
-                "1",
-                "--out",
-                file,
-            ]
-        )
-        == 0
-    )
+    words = "--robots 4 --targets 4 --sensing-attacks 1 --link-attacks 2 --seed 1 --out"
+    assert run(["new", *words.split(), file]) == 0
     assert run(["decentralise", file, "--out", str(tmp_path / "out"), option, value]) == 2
     assert named in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

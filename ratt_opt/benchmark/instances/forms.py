@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Literal, Self
 
@@ -26,7 +27,7 @@ MOST_TABLED, MOST_NODES = 20, 2000
 """Elements of a table, of which the file has ``2**n`` values; robots of a network."""
 
 
-class TeamInput(Record):
+class TeamInput(Record, ABC):
     """Robots, links and budgets of a problem whose set function a subclass gives.
 
     ``robot`` : (E,) owner of each element; ``links`` : of robots, or ``None`` for all
@@ -47,9 +48,9 @@ class TeamInput(Record):
         return self
 
     @property
+    @abstractmethod
     def function(self) -> SetFunction:
         """The set function over the elements."""
-        raise NotImplementedError
 
     @cached_property
     def stated(self) -> Problem:

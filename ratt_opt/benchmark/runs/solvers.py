@@ -27,7 +27,6 @@ from ratt_opt.certificates.edge_cuts import certify_cuts
 from ratt_opt.certificates.write import certify
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.missions.players.planners import PLANNERS, elements_of
-from ratt_opt.planners.registry import PUBLISHED
 from ratt_opt.planners.scenario_program import ScenarioPlan, scenario_program
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
 from ratt_opt.solvers.refined import refined
@@ -75,7 +74,7 @@ def names() -> dict[str, tuple[str, ...]]:
         kind: tuple(point.name for point in entry_points(group=f"ratt_opt.{kind}s")) for kind in ("planner", "attacker")
     }
     return {
-        "planner": (*PLANNERS, *(name for name in PUBLISHED if name not in PLANNERS), *own["planner"]),
+        "planner": (*PLANNERS, *(name for name in SPECIAL if name not in PLANNERS), *own["planner"]),
         "attacker": (*ATTACKERS, *own["attacker"]),
         "cuts": ("fewest_cuts",),
     }
@@ -94,8 +93,7 @@ def find_solver(track: str, name: str) -> Callable[[BenchmarkInstance, Path, flo
         return _worst
     if track == "planner" and name in SPECIAL:
         return SPECIAL[name]
-    published = {key: one.plan for key, one in PUBLISHED.items()}
-    known: dict[str, Any] = {"planner": {**PLANNERS, **published}, "attacker": ATTACKERS}.get(track, {})
+    known: dict[str, Any] = {"planner": PLANNERS, "attacker": ATTACKERS}.get(track, {})
     function = known.get(name) or _foreign(track, name)
     runner = _plan_by if track == "planner" else _attack_by
     return lambda instance, _out, seconds: runner(instance, function, seconds)
@@ -152,7 +150,11 @@ def _maxmin(instance: BenchmarkInstance, out: Path, seconds: float) -> None:
     began = time.monotonic()
     _plan_by(instance, PLANNERS["ratt"], seconds)
     by_values = isinstance(instance.problem, TableInput)
-    team = instance.team if by_values else stated_problem(instance)[0].problem(stated_problem(instance)[1])
+    if by_values:
+        team = instance.team
+    else:
+        given, objective = stated_problem(instance)
+        team = given.problem(objective)
     result = solve_maxmin(team, time_limit=max(SEARCH_SHARE * seconds, 0.1))
     is_sum = isinstance(instance.problem, SumInput)
     ends = {} if is_sum else {"lower": result.lower, "upper": result.upper}

@@ -13,17 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.marginals import MarginalBrackets
-from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
 from ratt_opt.curvatures.planar.regions import MARGIN, MarginalSide
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import IntArray
-    from ratt_opt.budget import Budget, Stop
+    from ratt_opt.budget import Stop
     from ratt_opt.curvatures.planar.level_program import RelaxedContext
-    from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["PlanarBrackets"]
 
@@ -36,18 +33,8 @@ class PlanarBrackets(MarginalBrackets):
 
     rests_on = "smallest levels"
 
-    def __init__(
-        self,
-        f: InformationObjective,
-        owners: IntArray,
-        *,
-        gap: float,
-        budget: Budget,
-        against_own: bool,
-        params: CurvatureParams = DEFAULT,
-    ) -> None:
-        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own, params=params)
-        levels_of = f.planar_levels()
+    def _prepare(self) -> None:
+        levels_of = self._f.planar_levels()
         assert levels_of is not None
         self._data = levels_of
         self._options: dict[int, Options] = {}

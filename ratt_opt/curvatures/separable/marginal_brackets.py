@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.curvatures.marginals import MarginalBrackets
-from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.curvatures.separable.context_search import BestContext, ContextSearch, FloorSearch
 from ratt_opt.setfunctions.criteria.two_by_two import determinant, eigenvalues
 from ratt_opt.setfunctions.criterion_parts import OtherElements
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sized
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.budget import Budget, Stop
+    from ratt_opt.budget import Stop
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["SeparableBrackets", "other_elements"]
@@ -33,22 +32,12 @@ LARGER = 1e-6
 class SeparableBrackets(MarginalBrackets):
     """One search an element, over contexts of at most one element of each other owner."""
 
-    def __init__(
-        self,
-        f: InformationObjective,
-        owners: IntArray,
-        *,
-        gap: float,
-        budget: Budget,
-        against_own: bool,
-        params: CurvatureParams = DEFAULT,
-    ) -> None:
-        super().__init__(f, owners, gap=gap, budget=budget, against_own=against_own, params=params)
+    def _prepare(self) -> None:
         self._choices: dict[int, OtherElements] = {}
         self._searches: list[ContextSearch | FloorSearch] = []
         self._largest: dict[int, BestContext] = {}
         self._on_top: dict[int, tuple[int, ...]] = {}
-        self._branches = f.overrides("marginal_minorant")
+        self._branches = self._f.overrides("marginal_minorant")
         self.rests_on = "separable minorants" if self._branches else "bounds for all contexts"
 
     def _begin(self) -> Stop | None:
