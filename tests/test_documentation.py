@@ -21,6 +21,17 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from analysis.limited_views.bite import BITES
+from analysis.measurements import AGAIN
+from ratt_opt import (
+    Problem,
+    Scenario,
+    greedy,
+    ratt,
+    smallest_largest_group,
+    solve_maxmin,
+    worst_case_attack,
+)
 from tests.documents import ROOT, Block, blocks, documents
 
 if TYPE_CHECKING:
@@ -125,6 +136,25 @@ def test_a_newcomer_s_first_hour(folder: Path) -> None:
     page = (folder / "boats" / "report.html").as_uri()
     shown = subprocess.run([browser, *flags, "--dump-dom", page], capture_output=True, text=True, check=True).stdout
     assert all(name in shown for name in ("Ada", "Bob", "Cy", "Moby", "Willy", "verified, both ends proved"))
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_the_team_of_the_first_example_is_hurt_by_both_attacks(page: str) -> None:
+    """The cuts split it, each attack alone costs a tenth of RATT's plan, and greedy plans are far from the best."""
+    code = next(block.code for block in blocks(ROOT / page) if "limited_view_scenario" in block.code)
+    names: dict[str, object] = {}
+    exec("\n".join(line for line in code.splitlines() if line.startswith(("import", "scenario"))), names)
+    scenario = names["scenario"]
+    assert isinstance(scenario, Scenario)
+    problem = scenario.problem()
+    assert smallest_largest_group(problem.graph, problem.alpha_c).upper < scenario.n_robots
+    plan = ratt(problem)
+    for budgets in ((problem.alpha_s, 0), (0, problem.alpha_c)):
+        attacked = Problem(problem.objective, problem.robot, problem.graph, *budgets)
+        assert worst_case_attack(attacked, plan).upper <= (1 - BITES) * problem.objective(plan.elements)
+    best = solve_maxmin(problem, gap=1e-3, max_nodes=1_000)
+    assert worst_case_attack(problem, greedy(problem)).upper < 0.9 * best.lower
+    assert worst_case_attack(problem, plan).upper == AGAIN["demo"]("demo_ratt")[0], "another team than the demo's"
 
 
 @pytest.mark.slow
