@@ -35,7 +35,12 @@ def test_proofs_by_covers_are_accepted_too(tmp_path):
         file = certify(problem, solve_maxmin(problem), tmp_path / "c.json").path
         document = json.loads(file.read_text(encoding="utf-8"))
         assert check(document)[0] == 3**5
-        covers += any("covers" in node for node in document["upper"]["tree"])
+        if any("covers" in node for node in document["upper"]["tree"]):
+            covers += 1
+            attack = document["upper"]["attacks"][document["upper"]["covers"][0]["attack"]]
+            attack["robots"] = [0]  # one robot is blinded here, another by the cover
+            with pytest.raises(RefusedError):
+                check(document)
     assert covers > 3
 
 
