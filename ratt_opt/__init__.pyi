@@ -152,7 +152,8 @@ from .bounds.relaxation import (
 )
 
 # == Certificates
-from .certificates.write import certify as certify, problem_document as problem_document
+from .certificates.stated_problem import problem_document as problem_document
+from .certificates.write import certify as certify
 from .certificates.certification import Certificate as Certificate
 from .certificates.verifier.verify import verify_certificate as verify_certificate
 from .certificates.verifier.verified import Verified as Verified

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx
 
+from ratt_opt.certificates.stated_problem import problem_document
 from ratt_opt.certificates.verifier.work import tick
-from ratt_opt.certificates.write import problem_document
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.sensor import Sensor
 

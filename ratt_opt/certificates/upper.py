@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.certificates.stated_inequalities import StatedInequalities, shortened
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, UpperProof
 
 if TYPE_CHECKING:
@@ -15,15 +16,11 @@ if TYPE_CHECKING:
 
 __all__ = ["upper_record"]
 
-DIGITS = 9
-"""Digits kept of a Fenchel point: any point is valid, and the bound changes by the square of its error."""
-LARGEST_CONDITION = 1e6
-"""Largest condition of the matrices whose points are shortened: with more, so few digits could leave one that is not
-positive definite."""
 
-
-def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
+def upper_record(problem: Problem, proof: UpperProof, upper: float = np.inf) -> dict[str, Any]:
     """Return the record; attacks, points, cuts and covers that no leaf weighs are left out, and equal ones pooled.
+
+    ``upper`` : the end that the proof shows, if it relies on the spacing of values
 
     Raises
     ------
@@ -33,7 +30,8 @@ def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
     covers = sorted(
         {k for node in proof.tree if isinstance(node, CoverLeaf) for k, _ in _weighed(node.covers, node.weights)}
     )
-    pool = _StatedParts(problem)
+    pool, inequalities = _StatedParts(problem), StatedInequalities(problem)
+    used.sort(key=lambda k: (proof.cuts[k].by_target, k))  # rows are counted behind cuts
     writer = _Nodes(
         pool,
         proof,
@@ -41,8 +39,12 @@ def upper_record(problem: Problem, proof: UpperProof) -> dict[str, Any]:
         covers={k: number for number, k in enumerate(covers)},
     )
     tree = [writer.node(node) for node in proof.tree]
-    cuts = [pool.cut(proof.attacks[proof.cuts[k].attack], proof.cuts[k]) for k in used]
+    cuts = [pool.cut(proof.attacks[proof.cuts[k].attack], proof.cuts[k]) for k in used if not proof.cuts[k].by_target]
+    for k in used:
+        if proof.cuts[k].by_target:
+            inequalities.add(pool.place(proof.attacks[proof.cuts[k].attack], proof.cuts[k]), proof.cuts[k])
     stated = {"covers": [pool.cover(proof.covers[k]) for k in covers]} if covers else {}
+    stated |= inequalities.record(None if proof.spacing is None else proof.spacing.count(upper))
     return {"attacks": pool.attacks(), "points": pool.points(), "cuts": cuts, **stated, "tree": tree}
 
 
@@ -74,13 +76,15 @@ class _StatedParts:
         key = point.tobytes(), target
         if key not in self._points:
             fenchel = self._objective.fenchel_point(point, target)
-            kept = fenchel if np.linalg.cond(point).max() > LARGEST_CONDITION else _short(fenchel)
-            self._points[key] = len(self._points), kept
+            self._points[key] = len(self._points), shortened(fenchel, point)
         return self._points[key][0]
 
+    def place(self, attack: Attack, cut: TangentCut) -> list[int]:
+        """The attack and the group that a cut bounds, by their numbers."""
+        return [self.attack(attack), self.groups(attack).index(tuple(sorted(cut.group)))]
+
     def cut(self, attack: Attack, cut: TangentCut) -> list[int]:
-        group = self.groups(attack).index(tuple(sorted(cut.group)))
-        return [self.attack(attack), group, self.point(cut.point, cut.target)]
+        return [*self.place(attack, cut), self.point(cut.point, cut.target)]
 
     def cover(self, cover: Cover) -> dict[str, Any]:
         return {
@@ -122,10 +126,3 @@ class _Nodes:
             return {"marginals": self._pool.attack(attack)}
         assert list(node.parts) == self._pool.groups(attack)
         return {"part": self._pool.attack(attack)}
-
-
-def _short(value: Any) -> Any:
-    """Shorten the digits of nested lists."""
-    if isinstance(value, list):
-        return [_short(item) for item in value]
-    return value if isinstance(value, int) else float(f"{value:.{DIGITS}g}")

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import json
-import math
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq
+from flint import ctx
 
 from ratt_opt._files import write_atomically
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.certification import NOT_ASKED_FOR, Certificate, Certification
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
+from ratt_opt.certificates.stated_inequalities import round_up
+from ratt_opt.certificates.stated_problem import is_certified, prior_range_of, problem_document
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
@@ -20,12 +21,8 @@ from ratt_opt.certificates.verifier.upper import upper_bounds
 from ratt_opt.certificates.verifier.verify import verify_certificate
 from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick, watched
 from ratt_opt.errors import InputError, ProofError, UndecidedError
-from ratt_opt.problem import check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
-from ratt_opt.setfunctions.criteria.registry import CERTIFIED, CRITERIA
-from ratt_opt.setfunctions.information import packed
-from ratt_opt.solvers.maxmin.tangent_proofs import proved_by_tangents
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,7 +36,6 @@ if TYPE_CHECKING:
 __all__ = [
     "certify",
     "certify_if_possible",
-    "problem_document",
     "write_certificate",
 ]
 
@@ -57,38 +53,6 @@ RESERVED, LEAST_RESERVED = 1.5, 0.1
 does not end, the file is verified with the upper end alone."""
 
 
-def problem_document(problem: Problem) -> dict[str, Any]:
-    """Return the problem record of a certificate; JSON numbers are shortest decimals that round-trip.
-
-    Raises
-    ------
-    InputError : the objective is none of the criteria that the verifier knows.
-    """
-    objective = check_problem(problem).information_objective
-    if not _is_known(problem):
-        *names, last = CRITERIA
-        raise InputError("objective", f"must be {', '.join(names)} or {last} to be certified", type(objective).__name__)
-    return {
-        "objective": objective.name,
-        "dimension": objective.dimension,
-        **objective.stated,
-        "prior": packed(objective.prior),
-        "information": packed(objective.information),
-        "weights": objective.weights.tolist(),
-        "owners": problem.robot.tolist(),
-        "links": [list(link) for link in sorted(problem.communication.links)],
-        "alpha_s": problem.alpha_s,
-        "alpha_c": problem.alpha_c,
-        "protected_robots": sorted(problem.protected_robots),
-        "protected_links": [list(link) for link in sorted(problem.protected_links)],
-    }
-
-
-def _is_known(problem: Problem) -> bool:
-    """Tell whether the objective is a registered criterion itself: a subclass may have another formula."""
-    return type(problem.objective) in CERTIFIED
-
-
 def certify_if_possible(
     problem: Problem, result: MaxMinResult, path: str | Path | None, budget: Budget | None = None, source: object = None
 ) -> Certification:
@@ -102,7 +66,7 @@ def certify_if_possible(
     """
     if path is None:
         return NOT_ASKED_FOR
-    if not _is_known(problem):
+    if not is_certified(problem):
         return Certification(why_not="only the trace, log-det and max-eigenvalue criteria have certificates")
     if result.proof is None:
         return Certification(why_not="the best plan was enumerated, which leaves no proof")
@@ -147,11 +111,9 @@ def certify(
     if result.proof is None:
         raise InputError("result", "must carry a proof (from solve_maxmin)", result.stop)
     own = Budget.inside(budget, time_limit)
-    proof = proved_by_tangents(problem, result, own).proof
-    assert proof is not None
     with limited(own.seconds_left):
         tick()
-        record = upper_record(problem, proof)
+        record = upper_record(problem, result.proof, result.upper)
         return write_certificate(
             problem,
             result.elements,
@@ -189,7 +151,7 @@ def write_certificate(
     """
     with Step("certificate, written and checked") as step, watched(step.say):
         record, plan = problem_document(problem), problem.check_plan(elements).tolist()
-        prior_range = _prior_range(problem, record, plan)
+        prior_range = prior_range_of(problem, record, plan)
         began = monotonic()
         high = max(float(upper), _proved_upper(Statement(record, plan, prior_range), upper_part), 0.0)
         reserve = RESERVED * (monotonic() - began) + LEAST_RESERVED
@@ -239,32 +201,10 @@ def _compact(value: object) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
-def _prior_range(problem: Problem, record: dict[str, Any], plan: list[int]) -> list[float]:
-    """Floats around the largest weighted eigenvalue of the priors, as narrow as the verifier can check."""
-    middle = problem.information_objective.prior_eigenvalue
-    if middle is None:
-        return []
-    for shave in (1e-15, 1e-14, 1e-13, 1e-12):
-        found = [middle * (1 - shave), middle * (1 + shave)]
-        try:
-            Statement(record, plan, found)
-        except ProofError:
-            continue
-        return found
-    return [middle * (1 - 1e-9), middle * (1 + 1e-9)]
-
-
 def _proved_upper(about: Statement, upper_part: dict[str, Any]) -> float:
     """Smallest float that the verifier can prove as an upper bound from this proof."""
     with ctx.workprec(256):
-        return max((_round_up(bound) for bound in upper_bounds(about, upper_part)), default=0.0)
-
-
-def _round_up(bound: fmpq | arb) -> float:
-    value = float(arb(bound).upper())
-    while not bound <= fmpq(*value.as_integer_ratio()):
-        value = math.nextafter(value, math.inf)
-    return value
+        return max((round_up(bound) for bound in upper_bounds(about, upper_part)), default=0.0)
 
 
 def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterator[tuple[float, dict[str, Any]]]:

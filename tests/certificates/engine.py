@@ -28,6 +28,7 @@ from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
+from ratt_opt.certificates.stated_problem import prior_range_of
 from ratt_opt.certificates.verifier.lower import check_lower
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.work import limited, tick, watched
@@ -110,7 +111,7 @@ def proof(kind, problem, plan, threshold, nodes=None):
 def statement(problem, plan):
     """What a certificate states of a problem and a plan, as the verifier reads it."""
     record, plan = problem_document(problem), np.asarray(plan).tolist()
-    return Statement(record, plan, write._prior_range(problem, record, plan))
+    return Statement(record, plan, prior_range_of(problem, record, plan))
 
 
 def stated_in(document):

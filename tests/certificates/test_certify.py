@@ -27,7 +27,7 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates import write
+from ratt_opt.certificates.stated_inequalities import round_up
 from ratt_opt.certificates.verifier.lower import is_forced
 from ratt_opt.graph.survivor_sizes import forced_group_size
 from tests.certificates.cases import certified
@@ -271,6 +271,6 @@ def test_where_time_ends_a_little_less_is_proved(kind, tmp_path, monkeypatch):
 @pytest.mark.parametrize("ball", [arb(0), arb(0, 1e-70), arb(1, 1e-300), arb(-1, 1e-30)])
 def test_a_bound_is_rounded_up_by_a_few_steps(ball):
     """From the middle of a ball around 0 there would be no end of them."""
-    found = write._round_up(ball)
+    found = round_up(ball)
     assert ball <= arb(found)
     assert found - float(ball.upper()) <= 2 * math.ulp(found)

@@ -106,7 +106,8 @@ class Statement:
         self.inverse = [self._inverse(p) for p in self.prior]
         self.square = [c.transpose() * c for c in self.output]
         parts = zip(self.weights, self.square, self.prior, strict=True)
-        self.prior_trace = total(w * trace(square * p) for w, square, p in parts)
+        self.prior_traces = [w * trace(square * p) for w, square, p in parts]
+        self.prior_trace = total(self.prior_traces)
         self.defect = [[missing(x, self.identity) for x in row] for row in self.information]
         semidefinite = all(delta is not None for row in self.defect for delta in row)
         need(semidefinite, "problem: an information matrix is not positive semidefinite")

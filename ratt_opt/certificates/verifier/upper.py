@@ -9,10 +9,10 @@ from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from flint import arb, ctx, fmpq, fmpq_mat
+from flint import arb, ctx, fmpq
 
 from ratt_opt.certificates.verifier import reading
-from ratt_opt.certificates.verifier.exact_matrices import definite, largest, total, trace
+from ratt_opt.certificates.verifier.exact_matrices import largest, total
 from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.reading import (
     array,
@@ -22,43 +22,38 @@ from ratt_opt.certificates.verifier.reading import (
     indices,
     links,
     need,
-    packed,
-    rows_of,
     walk,
 )
+from ratt_opt.certificates.verifier.spacing import Spacing
 from ratt_opt.certificates.verifier.statement import PRECISIONS
-from ratt_opt.certificates.verifier.work import afford, hold, tick
+from ratt_opt.certificates.verifier.tangents import read_points
+from ratt_opt.certificates.verifier.target_lemmas import TargetInequalities
+from ratt_opt.certificates.verifier.work import hold, tick
 from ratt_opt.errors import ProofError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt.certificates.verifier.statement import Statement
+    from ratt_opt.certificates.verifier.tangents import Bound
 
 __all__ = ["Left", "UpperCheck", "Winners", "check_upper", "upper_bounds"]
 
 Left = tuple[tuple[int, ...], ...]
 Winners = dict[int, frozenset[int]]
 
+OPTIONAL = "covers", "tangents", "lemmas", "usual", "rows", "spacing"
+FIELDS = " ".join(("attacks points cuts tree", *OPTIONAL))
 NODES = "covers", "marginals", "fenchel", "part"
 """Names of nodes, by a field that no other node has; those without one are branches on elements."""
-BLOCK = 16
-"""Points whose scores are computed between two looks at the clock."""
-
-
-class _Point(NamedTuple):
-    """``phi(S) <= constant + sum of scores[e] over e in S`` for every set of elements."""
-
-    scores: list[fmpq]
-    constant: Any
 
 
 class _Cut(NamedTuple):
-    """``phi(plan restricted to group)`` is at most what the point says of the elements of the group's robots."""
+    """``phi(plan restricted to group)`` is at most what the bound says of the elements of the group's robots."""
 
     attack: int
     group: frozenset[int]
-    point: _Point
+    bound: Bound
 
 
 class _Cover(NamedTuple):
@@ -94,18 +89,23 @@ class UpperCheck:
 
     def __init__(self, about: Statement, part: object) -> None:
         self.about, self.bounds = about, list[Any]()
+        given = {name: [] for name in OPTIONAL} | part if isinstance(part, dict) else part
+        parts = fields("upper proof", given, FIELDS)
+        attacks, points, cuts, tree, covers, tangents, lemmas, usual, rows, spacing = parts
         self._has_covers = isinstance(part, dict) and "covers" in part
-        names = "attacks points cuts tree covers" if self._has_covers else "attacks points cuts tree"
-        attacks, points, cuts, tree, *covers = fields("upper proof", part, names)
         families = array("attacks", attacks)
         reading.check_size("attacks", len(families) * about.n, reading.MOST_CELLS)
         self.groups = [self._groups_left(attack) for attack in families]
-        self._points = self._read_points(points)
+        self._points = read_points(about, points)
+        self._inequalities = TargetInequalities(about, tangents, lemmas, usual)
         self.cuts = [self._cut(cut) for cut in array("cuts", cuts)]
-        self.covers = [self._cover(cover) for given in covers for cover in array("covers", given)]
+        self.cuts += [self._row(row) for row in array("rows", rows)]
+        self.covers = [self._cover(cover) for cover in array("covers", covers)]
         self._marginals = cache(lambda: MarginalBounds(about))
         self._named: dict[int, list[tuple[int, ...]]] = {}
         walk("upper", tree, (about.choices, {}), self.expand)
+        if isinstance(part, dict) and "spacing" in part:
+            self.bounds = Spacing(about, spacing, self._inequalities.lemmas).lowered(self.bounds)
 
     def expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
         """Yield the cases below a branch; append a leaf's bound."""
@@ -157,10 +157,10 @@ class UpperCheck:
         need(mass > 0 and all(w >= 0 for w, _ in pairs), "upper proof: a leaf's weights are negative or all zero")
         wins = all(len(self.groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for _, cut in pairs)
         need(wins, "upper proof: a leaf uses a group that is not known to win")
-        bound = total(w * cut.point.constant for w, cut in pairs)
+        bound = total(w * cut.bound.constant for w, cut in pairs)
         for i, elements in enumerate(left):
             tick()
-            active = [(w, cut.point.scores) for w, cut in pairs if i in cut.group]
+            active = [(w, cut.bound.scores) for w, cut in pairs if i in cut.group]
             bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
         return bound / mass
 
@@ -210,11 +210,18 @@ class UpperCheck:
 
     def _cut(self, given: object) -> _Cut:
         a, g, p = array("cut", given, 3)
-        attack = self._number("cut attack", a)
-        groups = self.groups[attack]
-        return _Cut(attack, groups[index("cut group", g, len(groups))], self._point("cut point", p))
+        return self._of_group("cut", a, g, self._point("cut point", p))
 
-    def _point(self, where: str, number: object) -> _Point:
+    def _row(self, given: object) -> _Cut:
+        a, g, inequalities = array("row", given, 3)
+        return self._of_group("row", a, g, self._inequalities.row(inequalities))
+
+    def _of_group(self, where: str, attack: object, group: object, bound: Bound) -> _Cut:
+        a = self._number(f"{where} attack", attack)
+        groups = self.groups[a]
+        return _Cut(a, groups[index(f"{where} group", group, len(groups))], bound)
+
+    def _point(self, where: str, number: object) -> Bound:
         return self._points[index(where, number, len(self._points))]
 
     def _cover(self, given: object) -> _Cover:
@@ -237,64 +244,3 @@ class UpperCheck:
         """The largest score of what is kept of a robot's elements; 0 if it is blinded."""
         tick()
         return max([fmpq(0), *(scores[e] for e in self.about.choices[robot] if e not in left_out)])
-
-    def _read_points(self, points: object) -> list[_Point]:
-        """Return for each Fenchel point the score of every element, and the constant of its bound."""
-        width = len(self.about.prior) * self.about.d**2
-        given = array("points", points)
-        reading.check_size("points", len(given) * max(width, len(self.about.owner)), reading.MOST_CELLS)
-        fenchel = [self._fenchel(point) for point in given]
-        columns = [x for row in self.about.information for matrix in row for x in matrix.entries()]
-        turned = fmpq_mat(len(self.about.owner), width, columns).transpose()
-        scores: list[list[fmpq]] = []
-        for k in range(0, len(fenchel), BLOCK):
-            rows = [x for row, _ in fenchel[k : k + BLOCK] for x in row]
-            block = (fmpq_mat(len(rows) // width, width, rows) * turned).tolist()
-            tick()
-            for row in block:
-                hold(max(row, key=lambda x: int(x.q)), len(row))
-            scores += block
-        return [_Point(own, constant) for own, (_, constant) in zip(scores, fenchel, strict=True)]
-
-    def _fenchel(self, point: object) -> tuple[list[fmpq], Any]:
-        """Return ``(W, c)`` with ``phi(S) <= c + sum over e in S of <W, information[e]>`` for every S.
-
-        trace:  tr(C L^{-1} C') >= 2 tr(C Y) - tr(Y' L Y), from (L^{-1} C' - Y)' L (L^{-1} C' - Y) >= 0; W = w Y Y'.
-        logdet: logdet L <= tr(Y L) - logdet Y - d, from log x <= x - 1 for the eigenvalues of Y L; W = w Y.
-        maxeig: lambda_max(C L^{-1} C') >= 1/q >= 2t - t^2 q with q = v'Lv / |Cv|^2; W = w t^2 vv' / |Cv|^2 for one
-        target. With u = Cv / |Cv| and z = C'u, (z'v)^2 <= (z' L^{-1} z) (v'Lv) (Cauchy), and z'v = |Cv|.
-        """
-        tick()
-        about, d, m = self.about, self.about.d, len(self.about.prior)
-        if about.objective == "maxeig":
-            target, size, vector = array("point", point, 3)
-            j, t = index("point target", target, m), exact("point t", size)
-            v = fmpq_mat(d, 1, [exact("point v", x) for x in array("point v", vector, d)])
-            seen = (v.transpose() * about.square[j] * v)[0, 0]
-            need(seen > 0, "upper proof: a direction v is zero, or so is its output")
-            weight = v * v.transpose() * (about.weights[j] * t * t / seen)
-            blank = [fmpq(0)] * (d * d)
-            constant = about.prior_high - 2 * about.weights[j] * t + trace(weight * about.inverse[j])
-            return blank * j + weight.entries() + blank * (m - j - 1), constant
-        row, constant = [], about.prior_trace if about.objective == "trace" else fmpq(0)
-        parts = zip(array("point", point, m), about.output, about.weights, about.inverse, strict=True)
-        for given, c, w, inverse in parts:
-            y = self._touched(given, c)
-            if about.objective == "logdet":
-                need(definite(y) > 0, "upper proof: a Fenchel point Y is not positive definite")
-                weight = y * w
-                product = y * inverse
-                afford(product)
-                constant -= w * d + w * arb(product.det()).log()
-            else:
-                weight = y * y.transpose() * w
-                constant -= 2 * w * trace(c * y)
-            constant += trace(weight * inverse)
-            row += weight.entries()
-        return row, constant
-
-    def _touched(self, given: object, c: fmpq_mat) -> fmpq_mat:
-        """Y (d, q) of one target, which is symmetric if the whole state counts."""
-        if self.about.is_whole:
-            return packed("point Y", given, self.about.d)
-        return rows_of("point Y", array("point Y", given, c.nrows() * c.ncols()), c.nrows())

@@ -56,7 +56,8 @@ class TangentCut(ByValue):
     """A tangent bound on one group of one attack; of a sum over targets, it may touch elsewhere for each.
 
     ``point`` : (M, d, d) posterior information where it touches; ``target`` : for max-eigenvalue, which target's.
-    ``lemmas`` : inequalities in the place of some targets' tangents
+    ``lemmas`` : inequalities in the place of some targets' tangents; ``by_target`` : whether it is a row, whose
+        tangents of single targets many rows share
     """
 
     attack: int
@@ -64,6 +65,7 @@ class TangentCut(ByValue):
     point: FloatArray
     target: int | None = None
     lemmas: tuple[TargetLemma, ...] = ()
+    by_target: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

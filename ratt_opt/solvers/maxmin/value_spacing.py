@@ -52,11 +52,12 @@ class ValueSpacing:
         """The largest value of a plan that is at most ``upper``, or somewhat more; ``upper`` itself if not finite."""
         if not 0 <= upper < np.inf:
             return upper
-        return min(upper, self._count(upper) * self.most * (1 + MARGIN))
+        return min(upper, self.count(upper) * self.most * (1 + MARGIN))
 
     def next_above(self, upper: float) -> float:
         """No value of a plan lies between ``below(upper)`` and this."""
-        return (self._count(max(upper, 0.0)) + 1) * self.least * (1 - MARGIN)
+        return (self.count(max(upper, 0.0)) + 1) * self.least * (1 - MARGIN)
 
-    def _count(self, upper: float) -> float:
-        return float(np.floor(upper / self.least * (1 + MARGIN)))
+    def count(self, upper: float) -> int:
+        """No plan of value ``upper`` or less sees more targets (or somewhat more)."""
+        return int(np.floor(upper / self.least * (1 + MARGIN)))

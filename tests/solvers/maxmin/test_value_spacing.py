@@ -54,10 +54,10 @@ def test_a_search_with_spacing_ends_at_the_exhaustive_optimum(seed: int) -> None
     assert spacing.below(proved) <= result.upper * (1 + 1e-9)
 
 
-def test_a_certificate_does_not_rely_on_spacing(tmp_path: object) -> None:
+def test_a_certificate_proves_what_spacing_closes(tmp_path: object) -> None:
     problem = coverage_team(np.random.default_rng(3), robots=6, paths=5, targets=40, lost=2)
     result = solve_maxmin(problem, gap=1e-3)
     assert result.proof is not None
     assert result.proof.spacing is not None
     made = certify(problem, result, f"{tmp_path}/best.json")
-    assert made.verified.upper == pytest.approx(result.upper + made.upper_raised)
+    assert made.verified.upper <= result.upper * (1 + 1e-7)

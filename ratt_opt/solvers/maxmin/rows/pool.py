@@ -42,7 +42,7 @@ class Row:
             if part.point is not None:
                 point[part.target] = part.point[part.target]
         lemmas = tuple(part.lemma for part in self.parts if part.lemma is not None)
-        return TangentCut(attack=attack, group=self.group, point=point, lemmas=lemmas)
+        return TangentCut(attack=attack, group=self.group, point=point, lemmas=lemmas, by_target=True)
 
 
 class InequalityPool:
