@@ -42,7 +42,13 @@ from .solvers.result import MaxMinResult as MaxMinResult
 from .solvers.undominated import undominated as undominated, UndominatedProblem as UndominatedProblem
 
 # == Planning by messages
-from .decentralised.plan import DecentralisedPlan as DecentralisedPlan, decentralised_ratt as decentralised_ratt
+from .decentralised.plan import (
+    DecentralisedPlan as DecentralisedPlan,
+    decentralised_ratt as decentralised_ratt,
+    decentralised_refined as decentralised_refined,
+)
+from .decentralised.knowledge import ExchangeParams as ExchangeParams
+from .decentralised.links import link_losses as link_losses, LinkLoss as LinkLoss, LinkLosses as LinkLosses
 from .decentralised.faults import Faults as Faults, RadioParams as RadioParams
 
 # == Attackers
@@ -92,6 +98,7 @@ from .missions.models.targets import (
     TargetMotion as TargetMotion,
 )
 from .missions.players.planners import (
+    DecentralisedPlanner as DecentralisedPlanner,
     MaxMinPlanner as MaxMinPlanner,
     RandomPlanner as RandomPlanner,
     RefinedPlanner as RefinedPlanner,

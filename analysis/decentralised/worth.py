@@ -88,7 +88,7 @@ def _coverage(case: Case, reach: float, rng: np.random.Generator) -> Problem:
     return Problem(f, np.repeat(np.arange(case.n_robots), choices), graph, case.alpha_s, 0)
 
 
-def _with_cuts(problem: Problem, alpha_c: int) -> Problem:
+def with_cuts(problem: Problem, alpha_c: int) -> Problem:
     """The problem for an adversary who may cut links as well, as far as there are any."""
     alpha_c = min(alpha_c, len(problem.communication.links))
     return Problem(problem.objective, problem.robot, problem.graph, problem.alpha_s, alpha_c)
@@ -127,7 +127,7 @@ WAYS: dict[str, Callable[[Problem], tuple[IntArray, float]]] = {
 
 def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:  # noqa: ARG001  (the interface of studies)
     """Share of the certified optimum [1] and decision time [s] of each way; ``open`` : gap of the optimum [1]."""
-    problem = _with_cuts(problem_of(case, seeds), case.alpha_c)
+    problem = with_cuts(problem_of(case, seeds), case.alpha_c)
     optimum = solve_maxmin(problem, time_limit=SEARCH)
     row: dict[str, Cell] = {"open": 1 - optimum.lower / optimum.upper if optimum.upper > 0 else 0.0}
     for name, way in WAYS.items():

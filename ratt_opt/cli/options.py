@@ -30,6 +30,7 @@ else:
 Planner = Literal[
     "ratt",
     "decentralised",
+    "decentralised_refined",
     "refined",
     "maxmin",
     "greedy",

@@ -6,11 +6,15 @@ many items of the other one have arrived. All numbers are little-endian. A packe
 ==============  ==================================================================================================
 header          version (1 byte), common digest (8), sender (2), number of the first item (4), items received (4),
                 number of items (2)
-link record     kind 1 (1), robot (2), number (4), blinded (1), n (2), n times: neighbour (2; highest bit: protected)
+link record     kind 1 (1), robot (2), number (4), flags (1: blinded 1, cannot be blinded 2, as bit masks 4), n (2),
+                then n times: neighbour (2; highest bit: protected); or n bytes: bit mask of neighbours, n bytes: of
+                protected ones (the shorter form)
 bait list       kind 2 (1), stamp (4), view (8), n (2), n times: value (8), robot (2)
 bait choice     kind 3 (1), stamp (4), view (8), n (2), n times: robot (2)
-bid             kind 4 (1), stamp (4), view (8), round (2), robot (2), element (4), value (8), n (4), n numbers (8)
+bid             kind 4 (1), stamp (4), view (8), round (2), value (8), n (2), m (4), n times: robot (2), element (4),
+                bit mask (m / 8) of the numbers, of m, that are not 0, and these (8)
 award           kind 5, fields as of a bid
+menu            kind 6, fields as of a bid
 ==============  ==================================================================================================
 """
 
@@ -23,28 +27,45 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.errors import InputError
+from ratt_opt.graph.communication import mask_of, robots_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
 
-__all__ = ["VERSION", "Award", "BaitChoice", "BaitList", "Bid", "Item", "LinkRecord", "Packet", "decode", "encode"]
+__all__ = [
+    "VERSION",
+    "Award",
+    "BaitChoice",
+    "BaitList",
+    "Bid",
+    "Choice",
+    "Item",
+    "LinkRecord",
+    "Menu",
+    "Packet",
+    "decode",
+    "encode",
+]
 
-VERSION = 1
+VERSION = 2
 """Version of the schema above: a robot refuses packets of any other."""
 HEADER = struct.Struct("<B8sHIIH")
 RECORD = struct.Struct("<BHIBH")
 ABOUT_BAIT = struct.Struct("<BI8sH")
 PRICED = struct.Struct("<dH")
-OFFER = struct.Struct("<BI8sHHIdI")
+OFFER = struct.Struct("<BI8sHdHI")
+CHOICE = struct.Struct("<HI")
 PROTECTED = 1 << 15
 """The highest bit of a neighbour's number: robots are fewer."""
+BLINDED, CANNOT_BE_BLINDED, AS_MASKS = 1, 2, 4
 
 
 @dataclass(frozen=True, slots=True)
 class LinkRecord:
     """The live links of one robot; of two records of a robot the one of the larger ``number`` holds.
 
-    ``protected`` : neighbours whose link to the robot cannot be cut. ``blinded`` : the robot sees nothing.
+    ``protected`` : neighbours whose link to the robot cannot be cut. ``blinded`` : the robot sees nothing;
+    ``is_protected`` : it cannot be blinded.
     """
 
     robot: int
@@ -52,11 +73,17 @@ class LinkRecord:
     neighbours: tuple[int, ...]
     protected: frozenset[int] = frozenset()
     blinded: bool = False
+    is_protected: bool = False
+
+    @property
+    def mask_bytes(self) -> int:
+        """Bytes of a bit mask of its neighbours."""
+        return max(self.neighbours, default=-1) // 8 + 1
 
     @property
     def size(self) -> int:
         """Bytes."""
-        return RECORD.size + 2 * len(self.neighbours)
+        return RECORD.size + 2 * min(len(self.neighbours), self.mask_bytes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,36 +118,60 @@ class BaitChoice:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Bid:
-    """The best element of a part of the tree beside those awarded, towards the root.
+class Choice:
+    """An element of a robot. ``information`` : (M d (d + 1) / 2,) lower triangles of its matrices, target by target."""
 
-    ``information`` : (M d (d + 1) / 2,) lower triangles of the element's information matrices, target by target.
-    """
-
-    stamp: int
-    view: bytes
-    round: int
     robot: int
     element: int
-    value: float
     information: FloatArray
 
     @property
     def size(self) -> int:
         """Bytes."""
-        return OFFER.size + 8 * len(self.information)
+        return CHOICE.size + (len(self.information) + 7) // 8 + 8 * int(np.count_nonzero(self.information))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bid:
+    """The best element of a part of the tree beside those awarded, or its best exchange, towards the root.
+
+    ``value`` : of the plan with it; of an exchange, what is proved of its worst case. ``choices`` : one element; of an
+    exchange all elements that change, none if no exchange is better.
+    """
+
+    stamp: int
+    view: bytes
+    round: int
+    value: float
+    choices: tuple[Choice, ...]
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return OFFER.size + sum(choice.size for choice in self.choices)
 
     def beats(self, other: Bid | None) -> bool:
         """Tell whether it is worth more; of equals the lowest element wins, as in RATT."""
-        return other is None or (self.value, -self.element) > (other.value, -other.element)
+        return other is None or self._rank > other._rank
+
+    @property
+    def _rank(self) -> tuple[float, float]:
+        return self.value, -min((choice.element for choice in self.choices), default=np.inf)
 
 
 class Award(Bid):
-    """The element that won a round, from the root to all."""
+    """The winner of a round, from the root to all; with limited hops a robot's own choice. Without choices: the end."""
 
     __slots__ = ()
 
 
+class Menu(Bid):
+    """All elements of a robot, for a neighbour."""
+
+    __slots__ = ()
+
+
+OFFERS: dict[int, type[Bid]] = {4: Bid, 5: Award, 6: Menu}
 Item = LinkRecord | BaitList | BaitChoice | Bid
 
 
@@ -149,35 +200,50 @@ def encode(packet: Packet) -> bytes:
 
 def _encoded(item: Item) -> bytes:
     if isinstance(item, LinkRecord):
-        ends = [i | PROTECTED * (i in item.protected) for i in item.neighbours]
-        head = RECORD.pack(1, item.robot, item.number, item.blinded, len(ends))
-        return head + struct.pack(f"<{len(ends)}H", *ends)
+        return _encoded_record(item)
     if isinstance(item, BaitList):
         head = ABOUT_BAIT.pack(2, item.stamp, item.view, len(item.best))
         return head + b"".join(PRICED.pack(value, robot) for value, robot in item.best)
     if isinstance(item, BaitChoice):
         head = ABOUT_BAIT.pack(3, item.stamp, item.view, len(item.robots))
         return head + struct.pack(f"<{len(item.robots)}H", *item.robots)
-    kind, numbers = 5 if isinstance(item, Award) else 4, item.information
-    offer = (item.round, item.robot, item.element, item.value, len(numbers))
-    return OFFER.pack(kind, item.stamp, item.view, *offer) + numbers.astype("<f8").tobytes()
+    kind = next(number for number, one in OFFERS.items() if type(item) is one)
+    floats = len(item.choices[0].information) if item.choices else 0
+    head = OFFER.pack(kind, item.stamp, item.view, item.round, item.value, len(item.choices), floats)
+    return head + b"".join(map(_encoded_choice, item.choices))
 
 
-def decode(data: bytes) -> Packet:
+def _encoded_choice(choice: Choice) -> bytes:
+    told = choice.information != 0
+    bits = np.packbits(told, bitorder="little").tobytes()
+    numbers: bytes = choice.information[told].astype("<f8").tobytes()
+    return CHOICE.pack(choice.robot, choice.element) + bits + numbers
+
+
+def _encoded_record(record: LinkRecord) -> bytes:
+    n, size = len(record.neighbours), record.mask_bytes
+    flags = BLINDED * record.blinded | CANNOT_BE_BLINDED * record.is_protected | AS_MASKS * (size < n)
+    head = RECORD.pack(1, record.robot, record.number, flags, min(size, n))
+    if size < n:
+        return head + b"".join(mask_of(ends).to_bytes(size, "little") for ends in (record.neighbours, record.protected))
+    return head + struct.pack(f"<{n}H", *(i | PROTECTED * (i in record.protected) for i in record.neighbours))
+
+
+def decode(data: bytes, version: int = VERSION) -> Packet:
     """Read a packet.
 
     Raises
     ------
     InputError : it is of another version, cut short, too long, or of an unknown kind.
     """
-    if not data or data[0] != VERSION:
-        raise InputError("packet", f"must be of version {VERSION}", data[0] if data else "nothing")
+    if not data or data[0] != version:
+        raise InputError("packet", f"must be of version {version}", data[0] if data else "nothing")
     try:
-        version, common, sender, first, received, count = HEADER.unpack_from(data)
+        _, common, sender, first, received, count = HEADER.unpack_from(data)
         place, items = HEADER.size, []
         for _ in range(count):
-            item, place = _decoded(data, place)
-            items.append(item)
+            items.append(_decoded(data, place))
+            place += items[-1].size
     except (struct.error, IndexError):
         raise InputError("packet", "must be whole", f"{len(data)} bytes") from None
     if place != len(data):
@@ -185,29 +251,51 @@ def decode(data: bytes) -> Packet:
     return Packet(version, common, sender, first, received, tuple(items))
 
 
-def _decoded(data: bytes, place: int) -> tuple[Item, int]:
-    """Read the item at a place; return it and the place behind it."""
+def _decoded(data: bytes, place: int) -> Item:
+    """Read the item at a place."""
     kind = data[place]
     if kind == 1:
-        _, robot, number, blinded, n = RECORD.unpack_from(data, place)
-        ends = struct.unpack_from(f"<{n}H", data, place + RECORD.size)
-        protected = frozenset(end & ~PROTECTED for end in ends if end & PROTECTED)
-        record = LinkRecord(robot, number, tuple(end & ~PROTECTED for end in ends), protected, bool(blinded))
-        return record, place + record.size
+        return _decoded_record(data, place)
     if kind in {2, 3}:
         _, stamp, view, n = ABOUT_BAIT.unpack_from(data, place)
         start = place + ABOUT_BAIT.size
         if kind == 3:
-            choice = BaitChoice(stamp, view, struct.unpack_from(f"<{n}H", data, start))
-            return choice, place + choice.size
-        best = tuple(PRICED.unpack_from(data, start + k * PRICED.size) for k in range(n))
-        listed = BaitList(stamp, view, best)
-        return listed, place + listed.size
-    if kind in {4, 5}:
-        _, stamp, view, number, robot, element, value, n = OFFER.unpack_from(data, place)
-        floats = struct.unpack_from(f"<{n}d", data, place + OFFER.size)
-        information = np.array(floats, dtype=np.float64)
-        information.setflags(write=False)
-        offer = (Award if kind == 5 else Bid)(stamp, view, number, robot, element, value, information)
-        return offer, place + offer.size
-    raise InputError("packet", "must hold items of kinds 1 to 5", kind)
+            return BaitChoice(stamp, view, struct.unpack_from(f"<{n}H", data, start))
+        return BaitList(stamp, view, tuple(PRICED.unpack_from(data, start + k * PRICED.size) for k in range(n)))
+    if kind not in OFFERS:
+        raise InputError("packet", "must hold items of kinds 1 to 6", kind)
+    _, stamp, view, number, value, n, floats = OFFER.unpack_from(data, place)
+    place, choices = place + OFFER.size, []
+    for _ in range(n):
+        choices.append(_decoded_choice(data, place, floats))
+        place += choices[-1].size
+    return OFFERS[kind](stamp, view, number, value, tuple(choices))
+
+
+def _decoded_choice(data: bytes, place: int, floats: int) -> Choice:
+    start = place + CHOICE.size + (floats + 7) // 8
+    bits = np.frombuffer(data[place + CHOICE.size : start], dtype=np.uint8)
+    if 8 * len(bits) < floats:
+        raise IndexError
+    told = np.unpackbits(bits, count=floats, bitorder="little").astype(bool)
+    information = np.zeros(floats)
+    information[told] = struct.unpack_from(f"<{np.count_nonzero(told)}d", data, start)
+    information.setflags(write=False)
+    robot, element = CHOICE.unpack_from(data, place)
+    return Choice(robot, element, information)
+
+
+def _decoded_record(data: bytes, place: int) -> LinkRecord:
+    _, robot, number, flags, n = RECORD.unpack_from(data, place)
+    place += RECORD.size
+    if flags & AS_MASKS:
+        if len(data) < place + 2 * n:
+            raise IndexError
+        masks = (int.from_bytes(data[place + k * n : place + (k + 1) * n], "little") for k in range(2))
+        neighbours, protected = (tuple(robots_of(mask)) for mask in masks)
+    else:
+        ends = struct.unpack_from(f"<{n}H", data, place)
+        neighbours = tuple(end & ~PROTECTED for end in ends)
+        protected = tuple(end & ~PROTECTED for end in ends if end & PROTECTED)
+    seen = (bool(flags & BLINDED), bool(flags & CANNOT_BE_BLINDED))
+    return LinkRecord(robot, number, neighbours, frozenset(protected), *seen)

@@ -4,31 +4,34 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from graphlib import TopologicalSorter
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ratt_opt._validation import check_integer, readonly
+from ratt_opt.bounds.guarantees import Guarantee
 from ratt_opt.bounds.heard_sets import heard_sets_bound
-from ratt_opt.budget import Budget, Stop
+from ratt_opt.budget import Budget, Stop, interruptible
 from ratt_opt.decentralised.agent import Agent
 from ratt_opt.decentralised.faults import Faults
-from ratt_opt.decentralised.knowledge import Disagreement, Knowledge
+from ratt_opt.decentralised.knowledge import Disagreement, ExchangeParams, Knowledge
 from ratt_opt.decentralised.simulator import Simulation
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.solvers.ratt import links_worth
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
-    from ratt_opt.bounds.guarantees import Curvatures, Guarantee
-    from ratt_opt.graph.threat import Threat
+    from ratt_opt._validation import IntArray
+    from ratt_opt.bounds.guarantees import Curvatures
 
-__all__ = ["DecentralisedPlan", "decentralised_ratt", "knowledge_of", "make_agents", "network_left"]
+__all__ = ["DecentralisedPlan", "decentralised_ratt", "decentralised_refined", "knowledge_of", "make_agents"]
 
 MOST_ROBOTS = 2**15
 """Robots that the messages' numbers tell apart."""
+NOTHING = Guarantee(0.0, ("no exchange in a component that planned alone",), "none", "none")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -36,17 +39,19 @@ class DecentralisedPlan(Plan):
     """A plan made by messages. Robots that crashed keep the element that they had.
 
     ``components`` : robots that planned together, ascending, by the lowest; a crashed robot alone
+    ``exchanges`` : taken by each component after RATT's plan
     ``heard`` : of each robot, the robots whose choices it knew when it chose, in the order of their choices; bait none
     ``rounds`` : longest chain of messages; ``messages``, ``bytes`` : sent until the last robot ended
     ``decision_time`` : until then, at the radios' bandwidth and delays [s]
     ``disagreements`` : neighbours that were refused, and why
     ``faults_met`` : ``(round, kind, robots)`` of the faults that came before the end
-    ``cliques`` : sets of greedy robots in each of which all had heard each other, one way; 1 if there are none
+    ``cliques`` : sets of greedy robots in each of which all had heard each other's last choice, one way; at least 1
     ``guarantee`` : share of the optimum that the plan's worst case keeps, blinded robots without information
     ``stop`` : ``EXHAUSTED``, or why it stopped before the end; robots then keep the best element so far
     """
 
     components: tuple[tuple[int, ...], ...]
+    exchanges: tuple[int, ...]
     heard: tuple[tuple[int, ...], ...]
     rounds: int
     messages: int
@@ -59,12 +64,14 @@ class DecentralisedPlan(Plan):
     stop: Stop
 
 
+@interruptible
 def decentralised_ratt(
     problem: Problem,
     *,
     faults: Faults | None = None,
     seed: int = 0,
     time_limit: float | None = None,
+    hops: int | None = None,
     k: Curvatures = None,
     c: Curvatures = None,
 ) -> DecentralisedPlan:
@@ -80,6 +87,8 @@ def decentralised_ratt(
     faults : what goes wrong; nothing by default
     seed : of delays, losses and duplicates
     time_limit : seconds of computing, not of the radios
+    hops : links over which a choice is told. Then robots that are no bait choose in the order of their numbers, each
+        beside the choices told within that distance, without auctions
     k, c : curvature of a submodular criterion, or total curvature, over feasible sets: the guarantee is stated for it;
         if neither is given, for the total curvature known from theory, which is 1 for the criteria of this library
 
@@ -89,28 +98,70 @@ def decentralised_ratt(
 
     Source: ratt.tex, Section VII, first direction; Algorithm 1 for the plan.
     """
+    hops = None if hops is None else check_integer("hops", hops, low=1)
+    return _planned(problem, {"hops": hops}, faults, seed, time_limit, {"k": k, "c": c})
+
+
+@interruptible
+def decentralised_refined(
+    problem: Problem,
+    *,
+    params: ExchangeParams | None = None,
+    faults: Faults | None = None,
+    seed: int = 0,
+    time_limit: float | None = None,
+    k: Curvatures = None,
+    c: Curvatures = None,
+) -> DecentralisedPlan:
+    """Improve the plan of :func:`decentralised_ratt` by exchanges that neighbours propose, in the same simulation.
+
+    A robot searches for better elements of its own and its neighbours beside what the others have. The best proposal of
+    a component is taken if the component's worst case is proved to rise. So every component's plan is at any time no
+    worse for it than RATT's. A component that planned alone guards its own worst case only: the guarantee is then
+    not claimed of exchanged elements.
+
+    Parameters
+    ----------
+    params : of the exchanges
+    problem, faults, seed, time_limit, k, c : as in :func:`decentralised_ratt`
+
+    Raises
+    ------
+    InputError : as :func:`decentralised_ratt`.
+
+    Source: this library; the neighbourhoods are those of large neighbourhood search (Shaw 1998), one a robot.
+    """
+    return _planned(problem, {"exchanges": params or ExchangeParams()}, faults, seed, time_limit, {"k": k, "c": c})
+
+
+def _planned(  # noqa: PLR0917
+    problem: Problem,
+    way: Mapping[str, Any],
+    faults: Faults | None,
+    seed: int,
+    time_limit: float | None,
+    known: Mapping[str, Curvatures],
+) -> DecentralisedPlan:
     problem, seed = check_problem(problem), check_integer("seed", seed, low=0)
-    known = {"k": k, "c": problem.objective.most_total_curvature if (k, c) == (None, None) else c}
+    if known["k"] is None and known["c"] is None:
+        known = {"c": problem.objective.most_total_curvature}
     heard_sets_bound(1, **known)
     budget = Budget(time_limit)
-    agents = make_agents(problem)
-    simulation = Simulation(agents, (faults or Faults()).check(problem), seed)
+    simulation = Simulation(make_agents(problem, budget=budget, **way), (faults or Faults()).check(problem), seed)
     stop = simulation.run(budget)
-    return plan_of(problem, simulation, stop, known)
-
-
-def plan_of(problem: Problem, simulation: Simulation, stop: Stop, known: Mapping[str, Curvatures]) -> DecentralisedPlan:
-    """Collect the decisions of the agents; ``known`` : the curvature of the guarantee."""
-    agents, costs = simulation.agents, simulation.costs
-    robots = range(problem.n_robots)
-    heard = {i: agents[i].heard for i in robots}
-    cliques = _cliques({i: others for i, others in heard.items() if others})  # who heard nobody chose as bait does
+    agents, costs, robots = simulation.agents, simulation.costs, range(problem.n_robots)
+    elements = readonly(np.array([agents[i].element for i in robots]))
+    components = _network_left(problem, simulation)
+    exchanges = tuple(0 if group[0] in simulation.crashed else agents[group[0]].exchanges for group in components)
+    is_ratts = not any(exchanges)
+    cliques = _cliques({i: agents[i].own.heard for i in robots}, elements) if is_ratts else len(components)
     return DecentralisedPlan(
-        elements=readonly(np.array([agents[i].element for i in robots])),
-        evaluations=sum(agent.evaluations for agent in agents.values()),
+        elements=elements,
+        evaluations=sum(agent.own.evaluations for agent in agents.values()),
         bait=tuple(i for i in robots if i not in simulation.crashed and i in agents[i].bait),
-        components=network_left(problem, simulation),
-        heard=tuple(heard.values()),
+        components=components,
+        exchanges=exchanges,
+        heard=tuple(tuple(agents[i].own.heard) for i in robots),
         rounds=costs.rounds,
         messages=costs.messages,
         bytes=costs.bytes,
@@ -118,26 +169,28 @@ def plan_of(problem: Problem, simulation: Simulation, stop: Stop, known: Mapping
         disagreements=tuple(one for i in robots for one in agents[i].disagreements),
         faults_met=tuple(simulation.met),
         cliques=cliques,
-        guarantee=heard_sets_bound(cliques, **known),
+        guarantee=heard_sets_bound(cliques, **known) if is_ratts or len(components) == 1 else NOTHING,
         stop=stop,
     )
 
 
-def _cliques(heard: Mapping[int, tuple[int, ...]]) -> int:
-    """Number of cliques that cover the given robots, first fit in the order of how many each has heard; at least 1."""
-    found: list[list[int]] = []
-    for i in sorted(heard, key=lambda robot: (len(heard[robot]), robot)):
-        known = set(heard[i])
-        for clique in found:
-            if known.issuperset(clique):
-                clique.append(i)
-                break
+def _cliques(heard: Mapping[int, Mapping[int, int]], elements: IntArray) -> int:
+    """Number of cliques that cover the robots that heard somebody, first fit in the order of their choices; at least 1.
+
+    ``heard`` : of each robot the robots that it heard, with the elements that they had then: who changed was not heard.
+    """
+    last = {i: {j for j, e in others.items() if elements[j] == e} for i, others in heard.items() if others}
+    found: list[set[int]] = []
+    for i in TopologicalSorter({i: sorted(known & last.keys()) for i, known in last.items()}).static_order():
+        clique = next((clique for clique in found if clique <= last[i]), None)
+        if clique is None:
+            found.append({i})
         else:
-            found.append([i])
+            clique.add(i)
     return max(len(found), 1)
 
 
-def network_left(problem: Problem, simulation: Simulation) -> tuple[tuple[int, ...], ...]:
+def _network_left(problem: Problem, simulation: Simulation) -> tuple[tuple[int, ...], ...]:
     """Components that are left of the network: crashed robots alone, no cut or refused links."""
     lost = {link for link in problem.communication.links if set(link) & simulation.crashed} | simulation.cut
     lost |= {
@@ -148,8 +201,8 @@ def network_left(problem: Problem, simulation: Simulation) -> tuple[tuple[int, .
     return tuple(sorted(tuple(sorted(group)) for group in problem.communication.groups(lost)))
 
 
-def make_agents(problem: Problem) -> dict[int, Agent]:
-    """One agent for each robot of a problem.
+def make_agents(problem: Problem, **way: Any) -> dict[int, Agent]:
+    """One agent for each robot of a problem; ``way`` : further fields of their :class:`Knowledge`.
 
     Raises
     ------
@@ -158,23 +211,20 @@ def make_agents(problem: Problem) -> dict[int, Agent]:
     if problem.n_robots > MOST_ROBOTS:
         raise InputError("problem", f"must have at most {MOST_ROBOTS} robots for messages", problem.n_robots)
     worth = lru_cache(maxsize=None)(links_worth)  # robots that know the same links find the same number
-    near = problem.communication.neighbours_of
-    return {i: Agent(knowledge_of(problem, i, near(i), worth)) for i in range(problem.n_robots)}
+    return {i: Agent(knowledge_of(problem, i, links_worth=worth, **way)) for i in range(problem.n_robots)}
 
 
-def knowledge_of(
-    problem: Problem, robot: int, near: tuple[int, ...], worth: Callable[[Threat], int] = links_worth
-) -> Knowledge:
-    """Part of a problem that one robot knows at first."""
-    elements = problem.choices[robot]
-    kept = problem.protected_links
+def knowledge_of(problem: Problem, robot: int, **more: Any) -> Knowledge:
+    """Part of a problem that one robot knows at first; ``more`` : its further fields."""
+    elements, near, kept = problem.choices[robot], problem.communication.neighbours_of(robot), problem.protected_links
     return Knowledge(
         robot=robot,
         elements=elements,
         objective=problem.information_objective.restricted_to(elements),
         neighbours=near,
         protected=frozenset(j for j in near if (min(robot, j), max(robot, j)) in kept),
+        is_protected=robot in problem.protected_robots,
         alpha_s=problem.alpha_s,
         alpha_c=problem.alpha_c,
-        links_worth=worth,
+        **{"links_worth": links_worth, **more},
     )

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from ratt_opt._validation import check_integer
 from ratt_opt.decentralised.agent import Agent
-from ratt_opt.decentralised.messages import decode, encode
+from ratt_opt.decentralised.messages import VERSION, decode, encode
 from ratt_opt.decentralised.plan import knowledge_of
 from ratt_opt.errors import InputError
 from ratt_opt.problem import check_problem
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from multiprocessing.context import SpawnProcess
 
-    from ratt_opt.decentralised.knowledge import Knowledge
+    from ratt_opt.decentralised.knowledge import ExchangeParams, Knowledge
     from ratt_opt.problem import Problem
 
 __all__ = ["ProcessParams", "ProcessPlan", "plan_in_processes"]
@@ -67,13 +67,23 @@ class ProcessPlan:
     messages: int
 
 
-def plan_in_processes(problem: Problem, *, killed: tuple[int, ...] = (), params: ProcessParams = PARAMS) -> ProcessPlan:
+def plan_in_processes(
+    problem: Problem,
+    *,
+    hops: int | None = None,
+    exchanges: ExchangeParams | None = None,
+    killed: tuple[int, ...] = (),
+    versions: Mapping[int, int] | None = None,
+    params: ProcessParams = PARAMS,
+) -> ProcessPlan:
     """Plan by messages between real processes on loopback.
 
     Parameters
     ----------
     problem : with a criterion of information matrices
+    hops, exchanges : as in :func:`decentralised_ratt` and :func:`decentralised_refined`
     killed : robots whose process is killed as the others begin
+    versions : robots whose messages are of another version, to see them refused
 
     Raises
     ------
@@ -82,17 +92,14 @@ def plan_in_processes(problem: Problem, *, killed: tuple[int, ...] = (), params:
     n = check_integer("n_robots", check_problem(problem).n_robots, low=1, high=params.most_robots)
     for robot in killed:
         check_integer("killed", robot, low=0, high=n - 1)
-    near: list[list[int]] = [[] for _ in range(n)]
-    for i, j in sorted(problem.communication.links):
-        near[i].append(j)
-        near[j].append(i)
+    odd = versions or {}
     context = get_context("spawn")
     lines: list[Connection] = []
     processes: list[SpawnProcess] = []
     try:
         for i in range(n):
             ours, theirs = context.Pipe()
-            told = knowledge_of(problem, i, tuple(sorted(near[i])))
+            told = knowledge_of(problem, i, hops=hops, exchanges=exchanges, version=odd.get(i, VERSION))
             process = context.Process(target=_run, args=(told, theirs, params), daemon=True)
             process.start()
             theirs.close()
@@ -211,7 +218,7 @@ class _Robot:
                 (size,) = LENGTH.unpack(await reader.readexactly(LENGTH.size))
                 if size > LONGEST:
                     raise InputError("packet", f"must have at most {LONGEST} bytes", size)
-                agent.receive(decode(await reader.readexactly(size)))
+                agent.receive(decode(await reader.readexactly(size), agent.version))
                 self._flush(agent)
         except (asyncio.IncompleteReadError, ConnectionError):
             agent.lose(other)

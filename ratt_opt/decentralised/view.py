@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 from hashlib import blake2b
+from math import inf
 from typing import TYPE_CHECKING
 
 from ratt_opt.graph.communication import CommunicationGraph
@@ -32,11 +33,13 @@ def digest(*parts: object) -> bytes:
 class ComponentView:
     """One component, as all of its robots see it.
 
-    ``members`` : ascending. ``threat`` : the component's links with what an attack on it may do, robots numbered by
-    their place in ``members``. ``parent`` : of each member on the way to ``root``; ``order`` : members, parents first.
+    ``near`` : live neighbours of each member; ``members`` : ascending. ``threat`` : the component's links with what an
+    attack on it may do, robots numbered by their place in ``members``. ``parent`` : of each member on the way to
+    ``root``; ``order`` : members, parents first.
     """
 
     digest: bytes
+    near: Mapping[int, list[int]]
     members: tuple[int, ...]
     threat: Threat
     root: int
@@ -53,6 +56,10 @@ class ComponentView:
             elif above in via:
                 via[i] = via[above]
         return via
+
+    def within(self, robot: int, hops: int) -> dict[int, int]:
+        """Parent of each other robot within some links of one, on a shortest way to it."""
+        return _tree(self.near, robot, hops)
 
 
 def live_component(records: Mapping[int, LinkRecord], start: int) -> dict[int, list[int]] | int:
@@ -86,27 +93,32 @@ def make_view(
     links = sorted((i, j) for i in members for j in near[i] if i < j)
     kept = [(i, j) for i, j in links if j in records[i].protected or i in records[j].protected]
     blinded = [i for i in members if records[i].blinded]
+    sheltered = [i for i in members if records[i].is_protected]
     graph = CommunicationGraph(len(members), frozenset((place[i], place[j]) for i, j in links))
     threat = Threat(
         graph,
         min(alpha_s, len(members)),
         min(alpha_c, len(links)),
+        frozenset(place[i] for i in sheltered),
         protected_links=frozenset((place[i], place[j]) for i, j in kept),
     )
     root = _middle(near, members[0])
     parent = _tree(near, root)
     order = (root, *parent)
-    return ComponentView(digest(members, links, kept, blinded), members, threat, root, parent, order)
+    name = digest(members, links, kept, blinded, sheltered)
+    return ComponentView(name, near, members, threat, root, parent, order)
 
 
-def _tree(near: Mapping[int, list[int]], root: int) -> dict[int, int]:
-    """Breadth-first: parent of each other robot, in the order in which they are met."""
-    parent, waiting = {root: root}, deque([root])
+def _tree(near: Mapping[int, list[int]], root: int, hops: float = inf) -> dict[int, int]:
+    """Breadth-first, up to some hops: parent of each other robot, in the order in which they are met."""
+    parent, waiting, depth = {root: root}, deque([root]), {root: 0}
     while waiting:
         i = waiting.popleft()
+        if depth[i] >= hops:
+            break
         for j in sorted(near[i]):
             if j not in parent:
-                parent[j] = i
+                parent[j], depth[j] = i, depth[i] + 1
                 waiting.append(j)
     del parent[root]
     return parent

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ratt_opt._validation import FloatArray
+    from ratt_opt.decentralised.links import LinkLosses
     from ratt_opt.decentralised.plan import DecentralisedPlan
+    from ratt_opt.graph.communication import Link
     from ratt_opt.problem import Problem
     from ratt_opt.report.description import Description
 
@@ -26,11 +28,23 @@ MOST_CELLS_NAMED = 30
 """Most robots whose numbers stand beside the table."""
 
 
-def heard_figure(problem: Problem, plan: DecentralisedPlan, known: Description) -> Figure:
-    """Return the figure: the network with bait, components and lost links; beside it the table of who heard whom."""
+def heard_figure(
+    problem: Problem, plan: DecentralisedPlan, known: Description, links: LinkLosses | None = None
+) -> Figure:
+    """Return the figure: the network with bait, components and lost links; beside it the table of who heard whom.
+
+    ``links`` : the wider a link, the more its loss while planning costs; if none costs anything, delays the decision
+    """
     figure: Figure = imported_whole("matplotlib.figure").Figure(figsize=(13, 6.8), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
-    _draw_network(left, problem, plan, known)
+    losses = () if links is None else links.losses
+    kind = "cost" if any(loss.cost > 0 for loss in losses) else "delay"
+    weights = {loss.link: max(getattr(loss, kind), 0.0) for loss in losses}
+    most = max(weights.values(), default=0.0)
+    told = f"link (widest: its loss while planning {'costs' if kind == 'cost' else 'delays by'} {most:.3g}"
+    label = f"{told}{' s' * (kind == 'delay')})" if most > 0 else "link"
+    widths = {link: 1 + 4 * weight / (most or 1.0) for link, weight in weights.items()}
+    _draw_network(left, problem, plan, known, (widths, label))
     _draw_table(right, problem, plan)
     parts, share = len(plan.components), plan.guarantee.value
     kept = f"at least {share:.3g} of the optimum after any attack" if share > 0 else "its curvature proves no share"
@@ -43,25 +57,28 @@ def heard_figure(problem: Problem, plan: DecentralisedPlan, known: Description) 
     return figure
 
 
-def _draw_network(axes: Axes, problem: Problem, plan: DecentralisedPlan, known: Description) -> None:
+def _draw_network(
+    axes: Axes, problem: Problem, plan: DecentralisedPlan, known: Description, drawn: tuple[dict[Link, float], str]
+) -> None:
     after = known.poses_after
     is_layout = after is None
     places = _layout(problem) if after is None else after[plan.elements][:, :2]
     home = {i: group for group in plan.components for i in group}
     lost = {tuple(sorted(who)) for _, kind, who in plan.faults_met if kind == "cut"}
     links = sorted(problem.communication.links)
+    widths, told = drawn
     for kind, colour, style, label in (
-        (False, SURVIVING, "solid", "link"),
+        (False, SURVIVING, "solid", told),
         (True, CUT, (0, (4, 3)), "link lost while planning"),
     ):
         chosen = [(i, j) for i, j in links if ((i, j) in lost or home[i] != home[j]) is kind]
         for n, (i, j) in enumerate(chosen):
-            ends = places[[i, j]].T
-            axes.plot(*ends, color=colour, linestyle=style, lw=1, zorder=1, label=label if n == 0 else None)
+            ends, wide = places[[i, j]].T, widths.get((i, j), 1.0)
+            axes.plot(*ends, color=colour, linestyle=style, lw=wide, zorder=1, label=label if n == 0 else None)
     gone = {kind: {who[0] for _, met, who in plan.faults_met if met == kind} for kind in ("blinded", "crashed")}
     greedy = [i for i in range(problem.n_robots) if i not in plan.bait]
     for robots, colour, marker, label in (
-        (greedy, INK, "o", "robot that chose by auction"),
+        (greedy, INK, "o", "robot that chose beside others"),
         (plan.bait, TARGET, "s", "bait"),
         (sorted(gone["blinded"]), BLINDED, "x", "blinded"),
         (sorted(gone["crashed"]), LOST, "D", "crashed"),
@@ -95,6 +112,6 @@ def _draw_table(axes: Axes, problem: Problem, plan: DecentralisedPlan) -> None:
         axes.set_xticks(range(n), list(map(str, order)))
         axes.set_yticks(range(n), list(map(str, order)))
     axes.set_xlabel("robot whose choice was heard")
-    axes.set_ylabel("robot that chose (bait first, then by auction)")
+    axes.set_ylabel("robot that chose (bait first, then in turn)")
     axes.set_title("who had heard whom when choosing", fontsize=10.5)
     axes.set_aspect("equal")

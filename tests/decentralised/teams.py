@@ -51,35 +51,40 @@ def breaking_faults(rng, problem, rounds=12):
     return radio_faults(rng, cuts=tuple(cuts), blinded=tuple(blinded), crashed=tuple(crashed))
 
 
-def expected(problem, plan):
-    """RATT's element of each robot in its component, by the definition; ``None`` for crashed robots."""
+def parts(problem, plan):
+    """Each component that is left without crashed robots: its robots, its elements, and its problem, by definition."""
     crashed = {who[0] for _, kind, who in plan.faults_met if kind == "crashed"}
     blind = [who[0] for _, kind, who in plan.faults_met if kind == "blinded"]
+    cut = {tuple(sorted(who)) for _, kind, who in plan.faults_met if kind == "cut"}
     f = problem.objective
     seen = np.where(np.isin(problem.robot, blind)[:, None, None, None], 0.0, f.information)
-    elements, bait = [None] * problem.n_robots, []
     for group in plan.components:
         if set(group) & crashed:
             continue
         own = np.flatnonzero(np.isin(problem.robot, group))
         place = {robot: k for k, robot in enumerate(group)}
-        cut = {tuple(sorted(who)) for _, kind, who in plan.faults_met if kind == "cut"}
         links = [link for link in problem.communication.links if set(link) <= set(group) and link not in cut]
         graph = nx.empty_graph(len(group))
         graph.add_edges_from((place[i], place[j]) for i, j in links)
         kept = [(place[i], place[j]) for i, j in problem.protected_links if (i, j) in links]
-        owner = [place[int(i)] for i in problem.robot[own]]
         alone = Problem(
             f.with_information(seen[own]),
-            owner,
+            [place[int(i)] for i in problem.robot[own]],
             graph,
             min(problem.alpha_s, len(group)),
             min(problem.alpha_c, len(links)),
-            (),
+            [place[i] for i in problem.protected_robots if i in place],
             kept,
         )
+        yield group, own, alone
+
+
+def expected(problem, plan):
+    """RATT's element of each robot in its component, by the definition; ``None`` for crashed robots."""
+    elements, bait = [None] * problem.n_robots, []
+    for group, own, alone in parts(problem, plan):
         planned = ro.ratt(alone)
-        for robot in group:
-            elements[robot] = int(own[planned.elements[place[robot]]])
+        for k, robot in enumerate(group):
+            elements[robot] = int(own[planned.elements[k]])
         bait += [group[k] for k in planned.bait]
     return elements, tuple(sorted(bait))

@@ -7,8 +7,9 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt import Faults
-from ratt_opt.decentralised.agent import Agent, State
-from ratt_opt.decentralised.messages import VERSION, Bid, decode, encode
+from ratt_opt.decentralised.agent import Agent
+from ratt_opt.decentralised.component_plan import State
+from ratt_opt.decentralised.messages import HEADER, RECORD, VERSION, Bid, LinkRecord, Packet, decode, encode
 from ratt_opt.decentralised.plan import make_agents
 from ratt_opt.decentralised.simulator import Simulation
 from tests.decentralised.teams import team
@@ -41,8 +42,8 @@ def test_packets_come_back_and_their_bytes_plan_as_well():
         for one, other in zip(packet.items, again.items, strict=True):
             assert type(one) is type(other)
             if isinstance(one, Bid):
-                assert np.array_equal(one.information, other.information)
-                assert (one.value, one.element, one.robot) == (other.value, other.element, other.robot)
+                assert all(map(np.array_equal, *([c.information for c in bid.choices] for bid in (one, other))))
+                assert (one.value, one.round) == (other.value, other.round)
             else:
                 assert one == other
 
@@ -62,6 +63,14 @@ def test_damaged_packets_are_refused():
             decode(bytes([VERSION + 1]) + data[1:])
 
 
+def test_link_records_are_sent_the_shorter_way():
+    for ends, kept, size in (((1, 300), {300}, 4), (tuple(range(40)), {3, 39}, 10), ((), set(), 0)):
+        record = LinkRecord(7, 3, ends, frozenset(kept), blinded=True, is_protected=bool(ends))
+        packet = Packet(VERSION, b"12345678", 7, 0, 0, (record,))
+        assert decode(encode(packet)) == packet
+        assert len(encode(packet)) == packet.size == HEADER.size + RECORD.size + size
+
+
 def run_with(problem, robot, agent):
     agents = make_agents(problem) | {robot: agent}
     simulation = Simulation(agents, Faults(), 0)
@@ -71,7 +80,7 @@ def run_with(problem, robot, agent):
 
 def test_a_robot_of_another_version_is_left_out_by_name():
     problem = team(np.random.default_rng(12), 5, objective="trace")
-    other = Agent(make_agents(problem)[2].knowledge, version=VERSION + 1)
+    other = Agent(replace(make_agents(problem)[2].knowledge, version=VERSION + 1))
     agents = run_with(problem, 2, other)
     near = {i for link in problem.communication.links if 2 in link for i in link} - {2}
     told = {one.robot: one for agent in agents.values() for one in agent.disagreements if one.robot != 2}

@@ -37,6 +37,16 @@ def test_a_killed_process_leaves_ratts_plans_of_what_is_left():
     assert plan.components == ((0,), (1,), (2, 3))
 
 
+@pytest.mark.slow
+def test_a_process_of_another_version_is_left_out():
+    problem = team(np.random.default_rng(8), 4, objective="logdet")
+    path = ro.Problem(problem.objective, problem.robot, nx.path_graph(4), 1, 1)
+    plan = plan_in_processes(path, versions={1: 99})
+    simulated = ro.decentralised_ratt(path, faults=ro.Faults(crashed=((0, 1),)))
+    assert plan.components == ((0,), (1,), (2, 3))
+    assert [plan.elements[i] for i in (0, 2, 3)] == [list(simulated)[i] for i in (0, 2, 3)]
+
+
 def test_too_many_processes_are_refused():
     with pytest.raises(ro.InputError, match="n_robots"):
         plan_in_processes(team(np.random.default_rng(0), 5), params=ProcessParams(most_robots=4))

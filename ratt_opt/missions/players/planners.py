@@ -10,7 +10,8 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_integer
 from ratt_opt.budget import uninterrupted
-from ratt_opt.decentralised.plan import decentralised_ratt
+from ratt_opt.decentralised.knowledge import ExchangeParams
+from ratt_opt.decentralised.plan import decentralised_ratt, decentralised_refined
 from ratt_opt.errors import InputError
 from ratt_opt.missions.players.named import get_player
 from ratt_opt.planners.registry import PUBLISHED
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt.budget import Budget
+    from ratt_opt.decentralised.faults import Faults
+    from ratt_opt.decentralised.plan import DecentralisedPlan
     from ratt_opt.problem import Plan, Problem
     from ratt_opt.scenario.planner_world import PlannerWorld
     from ratt_opt.solvers.result import MaxMinResult
@@ -32,6 +35,7 @@ if TYPE_CHECKING:
 __all__ = [
     "PLANNERS",
     "AnytimePlanner",
+    "DecentralisedPlanner",
     "MaxMinPlanner",
     "RandomPlanner",
     "RefinedPlanner",
@@ -86,6 +90,24 @@ class RefinedPlanner:
 
 
 @dataclass(frozen=True, slots=True)
+class DecentralisedPlanner:
+    """The plan by messages between neighbours: RATT's, or with ``exchanges``, or with choices told ``hops`` far."""
+
+    exchanges: ExchangeParams | None = None
+    hops: int | None = None
+    faults: Faults | None = None
+    seed: int = 0
+
+    def __call__(self, problem: Problem) -> DecentralisedPlan:
+        """Plan in a simulation of the radios. InputError : exchanges with limited hops."""
+        if self.exchanges is None:
+            return decentralised_ratt(problem, hops=self.hops, faults=self.faults, seed=self.seed)
+        if self.hops is not None:
+            raise InputError("hops", "must be None if robots exchange: all choices must be known", self.hops)
+        return decentralised_refined(problem, params=self.exchanges, faults=self.faults, seed=self.seed)
+
+
+@dataclass(frozen=True, slots=True)
 class RandomPlanner:
     """A random plan; the numbers of a step depend on the seed and on the numbers of elements."""
 
@@ -100,7 +122,8 @@ class RandomPlanner:
 
 PLANNERS: dict[str, Planner] = {
     "ratt": ratt,
-    "decentralised": decentralised_ratt,
+    "decentralised": DecentralisedPlanner(),
+    "decentralised_refined": DecentralisedPlanner(exchanges=ExchangeParams()),
     "maxmin": MaxMinPlanner(),
     "refined": RefinedPlanner(),
     "greedy": greedy,

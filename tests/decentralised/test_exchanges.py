@@ -1,0 +1,95 @@
+"""Exchanges by messages never lower a component's worst case, and come near those with a centre."""
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from analysis.decentralised.exchanges import compared, connected_cameras
+from ratt_opt import ExchangeParams, Problem, Stop, decentralised_ratt, decentralised_refined
+from ratt_opt.decentralised.processes import plan_in_processes
+from tests.decentralised.teams import connected_graph, parts, radio_faults, team
+
+QUICK = ExchangeParams(kicks=1)
+
+
+def cameras(rng, seed, n=6):
+    """Cameras in few pairs of links, so that RATT's plan is often not the best one; some cannot be blinded."""
+    scenario = ro.limited_view_scenario(n, n, alpha_s=0, alpha_c=0, seed=seed, headings=6)
+    found = ro.undominated(scenario.problem(["trace", "logdet", "maxeig"][seed % 3]))
+    sheltered = [i for i in range(n) if rng.random() < 0.1]
+    graph = connected_graph(rng, n, 0.4)
+    links = sorted(tuple(sorted(link)) for link in graph.edges)
+    kept = [link for link in links if rng.random() < 0.1]
+    return Problem(found.objective, found.robot, graph, 1, min(2, len(links)), sheltered, kept)
+
+
+def check_no_worse(seed):
+    rng = np.random.default_rng([3, seed])
+    problem = cameras(rng, seed)
+    links, at = sorted(problem.communication.links), lambda: int(rng.integers(40))
+    cuts = tuple((at(), *links[k]) for k in rng.permutation(len(links))[: seed % 4])
+    crashed = ((at(), int(rng.integers(problem.n_robots))),) if seed % 5 == 0 else ()
+    faults = radio_faults(rng, cuts=cuts, crashed=crashed, blinded=((at(), 0),) if seed % 7 == 0 else ())
+    plan = decentralised_refined(problem, params=QUICK, faults=faults, seed=seed, c=0.5)
+    is_claimed = not sum(plan.exchanges) or len(plan.components) == 1
+    assert plan.guarantee == (0.25 if is_claimed else 0.0)
+    assert plan.stop is Stop.EXHAUSTED
+    assert not plan.disagreements
+    taken = dict(zip(plan.components, plan.exchanges, strict=True))
+    for group, own, alone in parts(problem, plan):
+        ratts = ro.ratt(alone).elements
+        elements = np.searchsorted(own, [plan.elements[i] for i in group])
+        if taken[group] == 0:
+            assert list(elements) == list(ratts)
+        else:
+            before, after = (ro.worst_case_attack(alone, chosen) for chosen in (ratts, elements))
+            assert after.lower > before.upper
+    return sum(plan.exchanges), len(plan.components) > 1
+
+
+def test_no_component_is_worse_whatever_goes_wrong():
+    found = np.array([check_no_worse(seed) for seed in (9, 10)])
+    assert found.all(axis=1).any()
+
+
+@pytest.mark.slow
+def test_no_component_is_worse_in_many_teams():
+    for seed in range(100, 120):
+        check_no_worse(seed)
+
+
+def test_every_exchange_raises_the_worst_case_and_none_leaves_ratts_plan():
+    problem, values = cameras(np.random.default_rng(1), 3), []
+    for most in range(3):
+        plan = decentralised_refined(problem, params=ExchangeParams(most=most, kicks=0))
+        values.append(ro.worst_case_attack(problem, plan.elements).lower)
+        assert sum(plan.exchanges) <= most
+    assert values[0] == ro.worst_case_attack(problem, ro.ratt(problem).elements).lower
+    assert values[0] < values[1] <= values[2]
+
+
+@pytest.mark.slow
+def test_ten_cameras_come_within_two_percent_of_a_centre():
+    for reach in (30, 45):
+        teams = connected_cameras(reach)
+        shares = compared(next(teams))
+        assert shares[1] >= 0.98
+        assert shares[1] >= shares[0]
+
+
+@pytest.mark.slow
+def test_processes_take_the_same_exchanges():
+    problem = team(np.random.default_rng(5), 4, objective="trace")
+    problem = Problem(problem.objective, problem.robot, problem.graph, 1, 1)
+    params = ExchangeParams(kicks=1)
+    plan, simulated = plan_in_processes(problem, exchanges=params), decentralised_refined(problem, params=params)
+    assert list(plan.elements) == list(simulated)
+
+
+def test_robots_that_plan_otherwise_are_refused():
+    problem = team(np.random.default_rng(6), 4, objective="trace")
+    assert not decentralised_ratt(problem).disagreements
+    with pytest.raises(ro.InputError, match="hops"):
+        decentralised_ratt(problem, hops=0)
+    with pytest.raises(ro.InputError, match="kicks"):
+        ExchangeParams(kicks=-1)
