@@ -12,12 +12,14 @@ import numpy as np
 
 from ratt_opt._validation import IntArray, check_distinct, check_integer, check_link, integer_array, readonly
 from ratt_opt._values import ByValue, ReprMixin
+from ratt_opt.choice_limit import ChoiceLimit
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from ratt_opt.setfunctions.base import SetFunction
 from ratt_opt.setfunctions.evaluation_error import evaluation_error, largest_fall
 from ratt_opt.setfunctions.information import InformationObjective
+from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -93,7 +95,8 @@ class Problem:
     protected_robots : robots that cannot be blinded
     protected_links : links ``(i, j)`` that cannot be cut
     at_most : robots that may choose an element that is not their idle one, or ``None`` for all. The idle element of a
-        robot is its first one that is worth nothing alone; ``idle`` holds them
+        robot is its first one without information, or, of other set functions, its first one that is worth nothing
+        alone; ``idle`` holds them
 
     Two problems are equal when they are the same object. ``dataclasses.replace`` makes a changed copy.
     ``threat`` holds what the adversary may do; ``choices`` the elements of each robot, ascending.
@@ -149,7 +152,7 @@ class Problem:
         for name, value in fields.items():
             object.__setattr__(self, name, value)
         if at_most is not None:
-            assert len(self.idle) == n_robots
+            assert self.choice_limit is not None  # refuses robots without an idle element
 
     def __repr__(self) -> str:
         robots = f"{self.n_robots} robots, {self.objective.n} elements"
@@ -164,18 +167,26 @@ class Problem:
 
     @cached_property
     def idle(self) -> IntArray:
-        """(N,) the first element of each robot that is worth nothing alone.
+        """(N,) the first element of each robot without information, or that is worth nothing alone.
 
         Raises
         ------
         InputError : a robot has none.
         """
-        single = self.objective.singletons()
-        without = [[int(e) for e in choice if single[e] == 0.0] for choice in self.choices]
+        f = unmetered(self.objective)
+        nothing = np.asarray(f.singletons() == 0.0)
+        if isinstance(f, InformationObjective):
+            nothing = ~np.any(f.information, axis=(1, 2, 3))
+        without = [choice[nothing[choice]].tolist() for choice in self.choices]
         if [] in without:
             rule = "needs an idle element of every robot, worth 0 alone"
             raise InputError("at_most", rule, f"none of robot {without.index([])}")
         return readonly(np.array([elements[0] for elements in without]))
+
+    @cached_property
+    def choice_limit(self) -> ChoiceLimit | None:
+        """The limit ``at_most`` with the idle elements, or ``None``."""
+        return None if self.at_most is None else ChoiceLimit(self.at_most, self.idle)
 
     @property
     def information_objective(self) -> InformationObjective:
@@ -261,8 +272,9 @@ class Problem:
                 if self.robot[e] != i:
                     found = f"{e} of robot {self.robot[e]}"
                     raise InputError(f"elements[{i}]", f"must be an element of robot {i}", found)
-        if self.at_most is not None and (busy := int((array != self.idle).sum())) > self.at_most:
-            raise InputError("elements", f"must choose at most {self.at_most} elements that are not idle", busy)
+        if (limit := self.choice_limit) is not None and not limit.allows(array):
+            busy = int(limit.busy(array).sum())
+            raise InputError("elements", f"must choose at most {limit.most} elements that are not idle", busy)
         return readonly(array.astype(np.int64))
 
     def check_attack(self, attack: Attack) -> Attack:
@@ -321,7 +333,7 @@ def check_problem(problem: Problem, *, knows_at_most: bool = False) -> Problem:
     if not isinstance(problem, Problem):
         raise InputError("problem", "must be a Problem, as scenario.problem() returns", type(problem).__name__)
     if problem.at_most is not None and not knows_at_most:
-        rule = "must be None for this: only RATT, refined, exhaustive_optimum, attacks and some planners know it"
+        rule = "must be None for this, which does not know a limit on how many robots choose"
         raise InputError("at_most", rule, problem.at_most)
     return problem
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["all_guarantees", "inapplicable_guarantees"]
 
 OPTIMAL = "one robot a group"
+ALWAYS = "Theorem 1", "pattern-free", "group size", "survivors", "this instance"
 SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
@@ -39,7 +40,7 @@ def all_guarantees(
     budget : an outer search's budget: after it, groups are cut by simpler rules, and guarantees that rest on them are
         weaker
     """
-    missing = inapplicable_guarantees(problem, alpha_cs)
+    missing = inapplicable_guarantees(check_problem(problem), alpha_cs)
     seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
     group_size, survivors = achievable_group_size(problem, budget), largest_survivor_group(problem)
     found: dict[str, Guarantee] = {}
@@ -64,7 +65,10 @@ def all_guarantees(
 
 def inapplicable_guarantees(problem: Problem, alpha_cs: int) -> dict[str, str]:
     """Published guarantees that do not apply to RATT's plan for one problem: name -> the hypothesis that fails."""
-    alpha = check_problem(problem).alpha_s + alpha_cs
+    alpha = check_problem(problem, knows_at_most=True).alpha_s + alpha_cs
+    if problem.at_most is not None:
+        reason = f"few robots choose (at_most = {problem.at_most}); proofs compare plans robot by robot"
+        return dict.fromkeys([*ALWAYS, SENSING_ONLY, REMARK_1, ALL_BAIT], reason)
     found: dict[str, str] = {}
     if problem.alpha_c > 0:
         found[SENSING_ONLY] = f"links are attacked (alpha_c = {problem.alpha_c})"

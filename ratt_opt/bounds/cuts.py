@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.choice_limit import ChoiceLimit
     from ratt_opt.problem import Problem
 
 __all__ = ["GroupCut", "combined_bound", "largest_of_each", "mixed_information", "tangent_cut", "uniform_selection"]
@@ -71,21 +72,35 @@ def tangent_cut(problem: Problem, group: Iterable[int], point: FloatArray, targe
 
 
 def combined_bound(
-    constants: FloatArray, scores: FloatArray, weights: FloatArray, choices: Sequence[IntArray]
+    constants: FloatArray,
+    scores: FloatArray,
+    weights: FloatArray,
+    choices: Sequence[IntArray],
+    limit: ChoiceLimit | None = None,
 ) -> tuple[float, FloatArray]:
     """Largest value of a convex combination of cuts over plans with elements in ``choices``.
 
     ``constants`` : (K,); scores : (K, E); weights : (K,) >= 0, not all zero (normalised here)
-    ``choices`` : per robot, the elements that remain
+    ``choices`` : per robot, the elements that remain; ``limit`` : on how many robots are busy
 
-    Returns the bound, and the (E,) combined scores it came from.
+    Returns the bound, and the (E,) combined scores it came from. If no plan is left it is 0, which all ends exceed.
     """
     share = weights / weights.sum()
     combined = share @ scores
-    terms = largest_of_each(combined, choices).tolist()
+    terms = _terms(combined, choices, limit)
+    if terms is None:
+        return 0.0, combined
     constant = float(share @ constants)
     magnitude = abs(constant) + float(np.abs(share * constants).sum()) + sum(map(abs, terms))
     return constant + sum(terms) + ROUNDING * magnitude, combined
+
+
+def _terms(amounts: FloatArray, choices: Sequence[IntArray], limit: ChoiceLimit | None) -> list[float] | None:
+    """The largest sum of amounts (E,) of a plan, robot by robot; ``None`` if there is no plan."""
+    if limit is None:
+        return list(largest_of_each(amounts, choices).tolist())
+    best = limit.best_plan(amounts, choices)
+    return None if best is None else list(amounts[best].tolist())
 
 
 def largest_of_each(amounts: FloatArray, choices: Sequence[IntArray]) -> FloatArray:

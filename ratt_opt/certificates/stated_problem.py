@@ -23,7 +23,7 @@ def problem_document(problem: Problem) -> dict[str, Any]:
     ------
     InputError : the objective is none of the criteria that the verifier knows.
     """
-    objective = check_problem(problem).information_objective
+    objective = check_problem(problem, knows_at_most=True).information_objective
     if not is_certified(problem):
         *names, last = CRITERIA
         raise InputError("objective", f"must be {', '.join(names)} or {last} to be certified", type(objective).__name__)
@@ -40,6 +40,7 @@ def problem_document(problem: Problem) -> dict[str, Any]:
         "alpha_c": problem.alpha_c,
         "protected_robots": sorted(problem.protected_robots),
         "protected_links": [list(link) for link in sorted(problem.protected_links)],
+        **({} if problem.at_most is None else {"at_most": problem.at_most}),
     }
 
 

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
-from ratt_opt._validation import FloatArray, readonly
+from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.evaluation_error import evaluation_error
 from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
@@ -58,9 +58,9 @@ class ChangedProblem(Problem):
     change_error: float = field(kw_only=True, default=0.0)
 
     def __init__(self, *, basis: ArrayLike, whole: Problem, change_error: float = 0.0, **fields: Any) -> None:
+        object.__setattr__(self, "whole", whole)
         super().__init__(**fields)
         object.__setattr__(self, "basis", readonly(np.asarray(basis, dtype=np.float64)))
-        object.__setattr__(self, "whole", whole)
         object.__setattr__(self, "change_error", change_error)
 
     @classmethod
@@ -69,8 +69,14 @@ class ChangedProblem(Problem):
     ) -> ChangedProblem:
         """``whole`` with another objective."""
         threat = {name: getattr(whole, name) for name in ("alpha_s", "alpha_c", "protected_robots", "protected_links")}
+        threat["at_most"] = whole.at_most
         fields = {"objective": objective, "robot": whole.robot, "graph": whole.graph, **threat}
         return cls(basis=basis, whole=whole, change_error=change_error, **fields)
+
+    @cached_property
+    def idle(self) -> IntArray:
+        """(N,) idle elements of ``whole``: others of little information may have none in these coordinates."""
+        return self.whole.idle
 
     @property
     def is_smaller(self) -> bool:

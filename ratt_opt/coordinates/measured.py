@@ -70,7 +70,7 @@ def measured_coordinates(problem: Problem) -> ChangedProblem:
     ------
     InputError : ``problem`` is no Problem, or its objective is another set function.
     """
-    objective = check_problem(problem).information_objective
+    objective = check_problem(problem, knows_at_most=True).information_objective
     measured = _measured(problem)
     change = None if measured is None else _change(objective, measured)
     if change is None:

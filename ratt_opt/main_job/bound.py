@@ -181,7 +181,7 @@ def bound(
     began = datetime.now(UTC)
     given = scenario_or_problem
     problem, source = _problem_of(given, objective, model)
-    check_problem(problem)
+    check_problem(problem, knows_at_most=True)
     whole, steps, busy_since = Budget(time_limit), Steps(progress), process_time()
     budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
     with steps("RATT and the baselines"):
@@ -412,6 +412,8 @@ def _guarantees(
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
     budget = budget.part(CURVATURE_SHARE)
+    if problem.at_most is not None:
+        return {}
     found = all_guarantees(problem, alpha_cs, k=k, c=c, budget=budget)
     if k or c:
         found["this instance"] = instance_bound(problem, robust.elements, k=k, c=c, time_limit=None, budget=budget)

@@ -48,6 +48,7 @@ def report_document(report: Findings) -> dict[str, Any]:
         "unit": report.unit,
         "alpha_s": problem.alpha_s,
         "alpha_c": problem.alpha_c,
+        "at_most": problem.at_most,
         "n_max": report.n_max,
         "n_max_upper": report.n_max_upper,
         "n_max_proof": _n_max_proof(report),

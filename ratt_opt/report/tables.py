@@ -212,6 +212,8 @@ def _bracket(report: Findings) -> Table:
     table.add_row("certificate", verdict_text(report.certificate))
     table.add_row("RATT's certified share of the best possible", share_text(report.ratt.worst_case.lower, report.upper))
     table.add_row("budgets (robots blinded, links cut)", f"{problem.alpha_s}, {problem.alpha_c}")
+    if problem.at_most is not None:
+        table.add_row("robots that may choose another element than idle", f"at most {problem.at_most}")
     is_known = report.n_max == report.n_max_upper  # a bound else, of which RATT is sure
     most = "" if report.n_max_upper is None else f", at most {report.n_max_upper}"
     table.add_row("smallest largest group, n_max", f"{report.n_max}" if is_known else f"at least {report.n_max}{most}")

@@ -33,7 +33,7 @@ __all__ = ["InformationInput"]
 LARGEST_ENTRY = 1e100
 """Units are the user's, so far larger entries than a scenario's are accepted; products of two stay finite."""
 
-LATER = ("output", "units", "element_headings", "element_controls")
+LATER = ("output", "units", "element_headings", "element_controls", "at_most")
 """Optional fields that came after the first release of the format."""
 
 Entry = Annotated[float, Field(strict=True, ge=-LARGEST_ENTRY, le=LARGEST_ENTRY), BeforeValidator(plain)]
@@ -83,7 +83,8 @@ class InformationInput(ProblemRecord):
     ``output`` : (q, d) the part ``C x`` of every target's state that counts, for the trace and the max-eigenvalue;
     ``None`` for the whole state. ``payload`` : (E,) objects of your own, one for each element, such as commands; they
     stay in memory (no file holds them) and count neither for equality nor for the digest. Links, budgets and
-    protections are those of a scenario.
+    protections are those of a scenario. ``at_most`` : robots that may choose another element than their idle one, the
+    first without information; ``None`` for all. ``with_idle`` adds idle elements.
 
     For maps and tables only, each optional: ``units`` : (d,) of the state's coordinates, such as ``["m", "m", "m/s",
     "m/s"]``; ``robot_names`` : (N,); ``target_names`` : (M,); ``robot_positions`` : (N, 2) now, ``element_positions`` :
@@ -113,6 +114,7 @@ class InformationInput(ProblemRecord):
     units: tuple[Text, ...] | None = None
     element_headings: tuple[Number, ...] | None = None
     element_controls: tuple[Place, ...] | None = None
+    at_most: Whole | None = None
     payload: SkipJsonSchema[tuple[Any, ...] | None] = Field(default=None, exclude=True, repr=False)
 
     @model_serializer(mode="wrap")
@@ -142,6 +144,10 @@ class InformationInput(ProblemRecord):
         return max(self.robot) + 1
 
     @property
+    def _at_most(self) -> int | None:
+        return self.at_most
+
+    @property
     def n_targets(self) -> int:
         """Number of targets M."""
         return len(self.prior)
@@ -155,6 +161,35 @@ class InformationInput(ProblemRecord):
     def matrices(self) -> tuple[FloatArray, FloatArray]:
         """``prior`` (M, d, d) and ``information`` (E, M, d, d) as arrays."""
         return readonly(_array("prior", self.prior)), readonly(_array("information", self.information))
+
+    def with_idle(self, at_most: int) -> Self:
+        """Return the input in which each robot may be idle, too, and ``at_most`` robots may be busy.
+
+        A robot that has an element without information keeps it. Each other one gets one after all elements, labelled
+        ``idle``, at the robot's place.
+
+        Raises
+        ------
+        InputError : ``at_most`` is not in ``[0, N]``, or a payload is given: an idle element has none.
+        """
+        if self.payload is not None:
+            raise InputError("payload", "must be absent to add idle elements", "one")
+        information, owners = self.matrices[1], np.array(self.robot)
+        rests = ~np.any(information, axis=(1, 2, 3))
+        without = [i for i in range(self.n_robots) if not rests[owners == i].any()]
+        first = [self.robot.index(i) for i in without]
+        given = self.element_positions, self.robot_positions, self.element_headings
+        stays: dict[str, tuple[Any, ...] | None] = {
+            "information": nested(np.zeros((len(without), *information.shape[1:]))),
+            "robot": tuple(without),
+            "labels": ("idle",) * len(without),
+            "element_positions": _taken(given[1], without) if given[1] else _taken(given[0], first),
+            "element_headings": _taken(given[2], first),
+            "element_controls": ((0.0, 0.0),) * len(without),
+        }
+        own = {name: getattr(self, name) for name in stays}
+        changes = {name: value and (*value, *(stays[name] or ())) for name, value in own.items()}
+        return self.replace(**changes, at_most=at_most)
 
     def replace(self, **changes: Any) -> Self:
         """Replace fields; the payload stays unless it is changed."""
@@ -194,6 +229,10 @@ class InformationInput(ProblemRecord):
     @property
     def _matrices(self) -> tuple[FloatArray, FloatArray, FloatArray | None]:
         return *self.matrices, None if self.weights is None else np.array(self.weights)
+
+
+def _taken(entries: tuple[Any, ...] | None, places: list[int]) -> tuple[Any, ...] | None:
+    return None if entries is None else tuple(entries[k] for k in places)
 
 
 def _array(name: str, nested: object) -> FloatArray:

@@ -116,6 +116,7 @@ class ProblemRecord(Record):
             self.alpha_c,
             frozenset(self.protected_robots),
             frozenset(self.protected_links),
+            self._at_most,
         )
 
     def _criterion(self, objective: str) -> InformationObjective:
@@ -129,6 +130,11 @@ class ProblemRecord(Record):
     @property
     def _output(self) -> FloatArray | None:
         """(q, d) the part of the state that counts, or ``None`` for the whole."""
+        return None
+
+    @property
+    def _at_most(self) -> int | None:
+        """Robots that may choose another element than their idle one, or ``None`` for all."""
         return None
 
     def pairs_within(self, reach: float) -> tuple[tuple[int, int], ...]:

@@ -26,7 +26,6 @@ from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.plan_search import PlanSearch
-from ratt_opt.solvers.few_robots import FewRobotsSearch
 from ratt_opt.solvers.maxmin.incumbent import Incumbent, ProvedPlan, break_ties
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.walk import Walk
@@ -128,9 +127,7 @@ def refined(
     ------
     InputError : a limit is negative, or ``start`` is no plan.
     """
-    if check_problem(problem, knows_at_most=True).at_most is not None:
-        return _refined_few(problem, Budget.inside(budget, time_limit), start)
-    if not isinstance(problem.objective, InformationObjective):
+    if not isinstance(check_problem(problem, knows_at_most=True).objective, InformationObjective):
         return _refined_by_values(problem, Budget.inside(budget, time_limit), start, seed, max_kicks)
     problem = with_unit_prior(problem)
     kicks_left = None if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
@@ -209,28 +206,6 @@ def _refined_by_values(
         stop=found.stop,
         kicks=search.kicks,
         worst_case=found.worst_case,
-    )
-
-
-def _refined_few(problem: Problem, budget: Budget, start: ArrayLike | Plan | None) -> RefinedPlan:
-    """Improve RATT's, the greedy and the myopic plan if the number of robots that choose is limited; no kicks."""
-    first = ratt(problem, budget=budget)
-    given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
-    search = FewRobotsSearch(problem, budget)
-    search.run([first.elements, *given, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))])
-    found, unattacked = search.worst_case, problem.team_value(search.elements, Attack())
-    is_ratts = np.array_equal(search.elements, first.elements)
-    return RefinedPlan(
-        elements=search.elements,
-        evaluations=first.evaluations + search.evaluations,
-        bait=first.bait if is_ratts else (),
-        alpha_cs=first.alpha_cs if is_ratts else None,
-        lower=found.lower,
-        upper=found.upper,
-        unattacked=unattacked,
-        stop=budget.stop() or Stop.HEURISTIC,
-        kicks=0,
-        worst_case=found,
     )
 
 

@@ -41,7 +41,7 @@ def undominated(problem: Problem) -> UndominatedProblem:
     their information matrices is positive semidefinite, up to rounding. The best worst case stays the same: exchange a
     dominated element of a plan for the one that dominates it. Every group's information grows or stays, so does its
     value, which is non-decreasing in the information, and so does the best group's under every attack. Dominance is
-    transitive, so a chain of exchanges ends at an element that is kept.
+    transitive, so a chain of exchanges ends at an element that is kept. Idle elements are kept if few may be busy.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ def undominated(problem: Problem) -> UndominatedProblem:
     ------
     InputError : ``problem`` is no Problem, or its objective is another set function.
     """
-    information = check_problem(problem).information_objective.information
+    information = check_problem(problem, knows_at_most=True).information_objective.information
     kept = np.concatenate([choice[_kept(information[choice])] for choice in problem.choices])
-    kept.sort()
+    kept = np.sort(kept) if problem.at_most is None else np.union1d(kept, problem.idle)
     return UndominatedProblem(
         objective=problem.information_objective.restricted_to(kept),
         robot=problem.robot[kept],
@@ -62,6 +62,7 @@ def undominated(problem: Problem) -> UndominatedProblem:
         alpha_c=problem.alpha_c,
         protected_robots=problem.protected_robots,
         protected_links=problem.protected_links,
+        at_most=problem.at_most,
         kept=kept,
     )
 

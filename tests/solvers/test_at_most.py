@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import product
+from functools import partial
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from ratt_opt.planners import PUBLISHED
 from tests.oracles import brute_force_worst_case
 from tests.strategies import random_graph
 
-KNOW = (ro.ratt, ro.greedy, ro.myopic, ro.refined, ro.exhaustive_optimum)
+REFINED = partial(ro.refined, time_limit=None, max_kicks=3)
+KNOW = (ro.ratt, ro.greedy, ro.myopic, REFINED, ro.exhaustive_optimum)
 
 
 def drawn(seed, robots=4, kind=None):
@@ -50,7 +52,7 @@ def test_the_optimum_is_that_of_all_allowed_plans_and_no_plan_is_above_it(seed):
         plan = planner(problem)
         problem.check_plan(plan.elements)
         assert brute_force_worst_case(problem, plan.elements) <= best + 1e-9
-    better = ro.refined(problem)
+    better = REFINED(problem)
     starts = [brute_force_worst_case(problem, planner(problem).elements) for planner in (ro.ratt, ro.greedy, ro.myopic)]
     assert better.lower >= max(starts) - 1e-9
     assert better.lower <= brute_force_worst_case(problem, better.elements) + 1e-9 <= better.upper + 2e-9
@@ -85,7 +87,7 @@ def test_all_may_choose_is_no_limit():
         assert ro.exhaustive_optimum(full).lower == pytest.approx(ro.exhaustive_optimum(free).lower)
         assert full.objective(ro.greedy(full)) == pytest.approx(full.objective(ro.greedy(free)))
         nobody = replace(problem, at_most=0)
-        assert list(ro.ratt(nobody)) == list(ro.refined(nobody)) == nobody.idle.tolist()
+        assert list(ro.ratt(nobody)) == list(REFINED(nobody)) == nobody.idle.tolist()
 
 
 def test_published_planners_choose_sets_of_that_size():
@@ -95,7 +97,7 @@ def test_published_planners_choose_sets_of_that_size():
     covers[1::2] = rng.random((20, 30)) < 0.2
     f = ro.Coverage(covers, np.ones(30))
     problem = ro.Problem(f, np.repeat(np.arange(20), 2), None, 2, 0, at_most=8)
-    best = ro.refined(problem, time_limit=20)
+    best = ro.refined(problem, time_limit=None, max_kicks=30)
     for name in ("resilient_selection", "sensing_only", "uniform_buckets", "partitioned_robust"):
         plan = problem.check_plan(PUBLISHED[name].plan(problem).elements)
         assert (plan != problem.idle).sum() == 8
@@ -106,22 +108,12 @@ def test_published_planners_choose_sets_of_that_size():
 
 def test_others_refuse_it_by_name():
     problem = drawn(1, kind="trace")
-    for name in (
-        "solve_maxmin",
-        "nonrobust_optimum",
-        "undominated",
-        "measured_coordinates",
-        "bound",
-        "relaxation_bounds",
-    ):
-        with pytest.raises(ro.InputError, match="at_most must be None for this"):
-            list(getattr(ro, name)(problem))
     plan = ro.ratt(problem)
     for call in (
+        lambda: list(ro.relaxation_bounds(problem)),
         lambda: ro.relaxation_bound(problem, [ro.Attack()]),
         lambda: ro.all_guarantees(problem, 0, c=0.5),
         lambda: ro.instance_bound(problem, plan.elements, c=ro.total_curvature(problem.objective)),
-        lambda: ro.problem_document(problem),
         lambda: ro.links_to_protect(problem, plan.elements, 1),
         lambda: PUBLISHED["sequential_greedy"].plan(problem),
         lambda: PUBLISHED["resource_aware_greedy"].plan(problem),
@@ -129,6 +121,49 @@ def test_others_refuse_it_by_name():
     ):
         with pytest.raises(ro.InputError, match="at_most must be None for this"):
             call()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_search_brackets_the_best_of_all_allowed_plans(seed):
+    """Criteria by relaxations, sums as a trace or by values: each closes on teams of this size."""
+    problem = drawn(seed, robots=3 + seed % 2)
+    found, best = ro.solve_maxmin(problem), best_by_definition(problem)
+    problem.check_plan(found.elements)
+    assert found.lower <= best + 1e-9 <= found.upper + 2e-9
+    assert found.upper - found.lower <= 1e-6 * max(1.0, found.upper)
+    assert found.lower <= brute_force_worst_case(problem, found.elements) + 1e-9
+
+
+def test_upper_ends_use_the_limit():
+    """Sensors of which four are on, two lost: the search closes it, and more on are worth more."""
+    rng = np.random.default_rng(1)
+    half = rng.normal(size=(20, 5, 2, 2)) * (rng.random((20, 5, 1, 1)) < 0.5)
+    half[::2] = 0.0
+    f = ro.LogDetObjective(np.tile(np.eye(2), (5, 1, 1)), half @ half.swapaxes(-1, -2))
+    brackets = []
+    for most in (3, 5):
+        problem = ro.Problem(f, np.repeat(np.arange(10), 2), None, 2, 0, at_most=most)
+        found = ro.solve_maxmin(problem, gap=1e-3)
+        assert found.upper <= found.lower * (1 + 2e-3)
+        brackets.append(found)
+    assert all(one.upper < more.lower for one, more in pairwise(brackets))
+
+
+def test_undominated_elements_keep_the_idle_ones():
+    problem = drawn(1, kind="trace")
+    few = ro.undominated(problem)
+    assert few.kept[few.idle].tolist() == problem.idle.tolist()
+    assert few.at_most == problem.at_most
+    free = ro.exhaustive_optimum(problem).lower
+    assert ro.exhaustive_optimum(few).lower == pytest.approx(free)
+
+
+def test_an_idle_element_has_no_information_even_if_others_are_worth_nothing_alone():
+    """Of the largest eigenvalue, an element about the better known target is worth nothing alone, and is no rest."""
+    information = np.zeros((4, 2, 1, 1))
+    information[0, 1] = information[2, 0] = 1.0
+    f = ro.MaxEigenvalueObjective(np.array([[[2.0]], [[1.0]]]), information)
+    assert ro.Problem(f, [0, 0, 1, 1], None, 0, 0, at_most=1).idle.tolist() == [1, 3]
 
 
 def test_bad_limits_and_plans_are_named():

@@ -36,6 +36,8 @@ class Statement:
     """One problem and plan, in exact numbers.
 
     ``output`` : the part C (q, d) of each target's state that counts: the identity if ``is_whole``. ``square`` : C'C.
+    ``at_most``, ``idle`` : robots that may choose another element than their idle one, their first without information;
+    ``None`` and nothing if all may.
     ``defect[e][j]`` : what has to be added to the eigenvalues of element ``e``'s information of target ``j`` to make it
     positive semidefinite. ``prior_low``, ``prior_high`` : bounds on ``max_j w_j lambda_max(C prior_j C')``
     (max-eigenvalue).
@@ -47,9 +49,11 @@ class Statement:
     """
 
     def __init__(self, problem: object, plan: object, prior_range: object) -> None:
-        self.is_whole = not (isinstance(problem, dict) and "output" in problem)
-        given = fields("problem", problem, PROBLEM if self.is_whole else f"{PROBLEM} output")
-        kind, d, prior, information, weights, owners, pairs, blinded, cut, robots, safe_links, *output = given
+        optional = [name for name in ("output", "at_most") if isinstance(problem, dict) and name in problem]
+        self.is_whole = "output" not in optional
+        given = fields("problem", problem, " ".join([PROBLEM, *optional]))
+        kind, d, prior, information, weights, owners, pairs, blinded, cut, robots, safe_links, *rest = given
+        output = rest[: not self.is_whole]
         need(kind in ("trace", "logdet", "maxeig"), "problem: the objective must be trace, logdet or maxeig")
         need(self.is_whole or kind != "logdet", "problem: the log-det has no output")
         self.objective, self.d = kind, index("dimension", d, 101)
@@ -74,6 +78,10 @@ class Statement:
         refuse_wide((x for row in (self.prior, *self.information) for x in row), self.d)
         need(all(definite(p) > 0 for p in self.prior), "problem: a prior is not positive definite")
         self._derive(prior_range)
+        self.at_most: int | None = None
+        self.idle: tuple[int, ...] = ()
+        for most in rest[len(output) :]:
+            self._read_limit(most)
 
     def _read_team(
         self, owners: object, pairs: object, budgets: tuple[object, object], safe: tuple[object, object], elements: int
@@ -91,6 +99,16 @@ class Statement:
             index("alpha_c", budgets[1], len(self.links) + 1),
         )
         self.safe_robots = frozenset(indices("protected_robots", safe[0], n))
+
+    def _read_limit(self, most: object) -> None:
+        """Read how many robots may be busy; the plan is one of these."""
+        limit = self.at_most = index("at_most", most, self.n + 1)
+        nothing = [all(not any(x.entries()) for x in row) for row in self.information]
+        first = [next((e for e in own if nothing[e]), None) for own in self.choices]
+        need(None not in first, "problem: a robot has no element without information, to be idle with")
+        self.idle = tuple(e for e in first if e is not None)
+        busy = sum(e != idle for e, idle in zip(self.plan, self.idle, strict=True))
+        need(busy <= limit, "plan: more robots are busy than at_most")
 
     def _read_numbers(self, prior: list[Any], rows: list[list[Any]], weights: list[Any], output: list[Any]) -> None:
         """Read matrices and weights exactly, once their shapes are those of the problem."""

@@ -150,19 +150,29 @@ class UpperCheck:
         """Return the bound by an average of cuts, each of the only group of an attack or of the declared winner.
 
         The worst case is at most that of each, so at most the constant of the average plus, robot by robot, the
-        largest score among the elements left.
+        largest score among the elements left. If only some robots may be busy, the others have the score of their idle
+        element: at most the idle scores of all, and the largest gains beside them. A robot without its idle element is
+        busy; if more are than may be, the leaf has no plan, and needs no cut.
         """
         pairs = self.weighed(node, "fenchel", self.cuts)
+        most, idle = self.about.at_most, self.about.idle
+        forced = 0 if most is None else sum(e not in elements for e, elements in zip(idle, left, strict=True))
+        if most is not None and forced > most:
+            return fmpq(0)
         mass = total(w for w, _ in pairs)
         need(mass > 0 and all(w >= 0 for w, _ in pairs), "upper proof: a leaf's weights are negative or all zero")
         wins = all(len(self.groups[cut.attack]) == 1 or winners.get(cut.attack) == cut.group for _, cut in pairs)
         need(wins, "upper proof: a leaf uses a group that is not known to win")
         bound = total(w * cut.bound.constant for w, cut in pairs)
+        gains: list[Any] = []
         for i, elements in enumerate(left):
             tick()
             active = [(w, cut.bound.scores) for w, cut in pairs if i in cut.group]
-            bound += max(total(w * scores[e] for w, scores in active) for e in elements) if active else 0
-        return bound / mass
+            scores = {e: total(w * scores[e] for w, scores in active) if active else fmpq(0) for e in elements}
+            rests = most is not None and idle[i] in scores
+            bound += scores[idle[i]] if rests else max(scores.values())
+            gains.extend([max(scores.values()) - scores[idle[i]]] if rests else [])
+        return (bound + total(sorted(gains, reverse=True)[: (most or 0) - forced])) / mass
 
     def cover_leaf(self, node: object, left: Left, _: Winners) -> Any:
         """Return the largest bound of covers, one of which each plan fails: none counts their weighted sum."""

@@ -34,6 +34,7 @@ class Verified:
     n_elements: int
     alpha_s: int
     alpha_c: int
+    at_most: int | None = None
     largest_defect: float
     upper_leaves: int
     lower_leaves: int
@@ -47,10 +48,11 @@ class Verified:
         """Say in plain text what was proved, for which data, with which arithmetic, and what was not."""
         proved = f"proved in {self.arithmetic}"
         lower = f"this plan has a worst-case value of at least {self.lower!r}"
+        limit = "" if self.at_most is None else f", at most {self.at_most} robots not idle"
         gap = f"the plan is within {gap_text(self.lower, self.upper, 3)} (relative) of the best possible worst case"
         return [
             f"problem: {self.objective}, {self.n_robots} robots, {self.n_elements} elements, {self.n_targets} targets, "
-            f"alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}; SHA-256 of its data {self.problem_hash}",
+            f"alpha_s = {self.alpha_s}, alpha_c = {self.alpha_c}{limit}; SHA-256 of its data {self.problem_hash}",
             *([f"made, as the file says, from the input with SHA-256 {self.made_from}"] if self.made_from else []),
             f"plan: {', '.join(map(str, self.elements))}",
             f"{proved}: no plan has a worst-case value above {self.upper!r} ({self.upper_leaves} leaves)",

@@ -92,6 +92,7 @@ def _decide(document: dict[str, Any], expected_problem: object) -> Verified:
         n_elements=len(about.owner),
         alpha_s=about.alpha_s,
         alpha_c=about.alpha_c,
+        at_most=about.at_most,
         largest_defect=float(arb(max(map(max, about.defect))).upper()),
         upper_leaves=upper_leaves,
         lower_leaves=lower_leaves,

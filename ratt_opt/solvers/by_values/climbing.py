@@ -10,7 +10,7 @@ from ratt_opt.attack.task import metered_problem
 from ratt_opt.budget import OutOfBudget
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
@@ -42,11 +42,13 @@ class Climbing:
             value, unchanged, i = self.value(elements), 0, 0
             while unchanged < len(current):
                 unchanged += 1
-                part.check()
-                found = self._best_exchange(current, i, value)
-                if found is not None:
-                    current[i], value = found
-                    unchanged = 0
+                for base in self._bases(current, i):
+                    part.check()
+                    found = self._best_exchange(base, i, value)
+                    if found is not None:
+                        current, value, unchanged = base, found[1], 0
+                        current[i] = found[0]
+                        break
                 i = (i + 1) % len(current)
         except OutOfBudget:
             self._budget.check()
@@ -54,12 +56,24 @@ class Climbing:
             self._asked = self._attacks.problem.objective
         return current
 
+    def _bases(self, plan: IntArray, robot: int) -> Iterator[IntArray]:
+        """Plans in which a robot may take another element: one busy robot rests if no more may be busy."""
+        limit = self._problem.choice_limit
+        if limit is None or limit.busy(plan)[robot] or limit.busy(plan).sum() < limit.most:
+            yield plan.copy()
+            return
+        for j in np.flatnonzero(limit.busy(plan)).tolist():
+            base = plan.copy()
+            base[j] = limit.idle[j]
+            yield base
+
     def kicked(self, elements: IntArray, rng: np.random.Generator, robots: int) -> IntArray:
         """Give some robots other elements at random."""
         other = elements.copy()
         for i in rng.permutation(len(elements))[:robots]:
             other[i] = rng.choice(self._problem.choices[i])
-        return other
+        limit = self._problem.choice_limit
+        return other if limit is None else limit.rest(other, rng.random(len(other)))
 
     def worth(self, elements: frozenset[int]) -> float:
         """Value of a set of elements, within the part of the budget that is being spent."""

@@ -32,7 +32,7 @@ __all__ = ["guarantee_bound", "pooling_bound"]
 def pooling_bound(problem: Problem, attacks: PlanAttacks, budget: Budget) -> float:
     """Bound by the worst attack found on robots that hold all their elements."""
     everyone = np.arange(problem.n_robots)
-    team = replace(problem, objective=Pooled(problem, _singles(attacks.problem)), robot=everyone)
+    team = replace(problem, objective=Pooled(problem, _singles(attacks.problem)), robot=everyone, at_most=None)
     worst = worst_case_attack_unrounded(
         team, everyone, AttackOptions(budget=budget.part(ATTACK_SHARE), brief=True)
     ).attack
@@ -46,6 +46,8 @@ def guarantee_bound(metered: Problem, worth: float) -> float:
     ``worth`` : no less than the worst case of RATT's plan
     """
     f, share = unmetered(metered.objective), 0.0
+    if metered.at_most is not None:  # the theorem compares robot by robot; a robot of the best plan may be idle here
+        return np.inf
     if (single := _singles(metered)) is not None:
         asked = metered.objective
         top = np.maximum(asked(range(f.n)) - asked.evaluate(~np.eye(f.n, dtype=np.bool_)), 0.0)

@@ -59,7 +59,7 @@ class PlanSearch:
 
     def __init__(self, problem: Problem, budget: Budget, params: WalkParams | None = None, *, seed: int = 0) -> None:
         self._given, self._budget, self._params = problem, budget, params or WalkParams()
-        elements = np.array([choice[0] for choice in problem.choices])
+        elements = np.array([choice[0] for choice in problem.choices]) if problem.at_most is None else problem.idle
         empty, full = np.zeros((2, problem.objective.n), dtype=np.bool_)
         full[:] = True
         ends = checked_values(unmetered(problem.objective), np.array([empty, full]))  # whatever the limits

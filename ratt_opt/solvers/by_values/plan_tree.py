@@ -37,13 +37,14 @@ class Pooled(SetFunction):
     """Upper bound, for a set of robots, on the value of any plan's elements of them.
 
     It is the value of all their elements; of a submodular function also the sum of the largest individual values, if
-    that is less.
+    that is less. If few robots may be busy, it is the sum of that many.
     """
 
-    __slots__ = ("_best", "_f", "_owners")
+    __slots__ = ("_best", "_f", "_most", "_owners")
 
     def __init__(self, problem: Problem, single: FloatArray | None) -> None:
         self._f, self._owners = unmetered(problem.objective), problem.robot
+        self._most = self.n if problem.at_most is None else problem.at_most
         self._best = None if single is None else np.array([single[choice].max() for choice in problem.choices])
 
     @property
@@ -54,7 +55,10 @@ class Pooled(SetFunction):
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the sets of robots in the rows of ``membership`` (K, N)."""
         values = checked_values(self._f, membership[:, self._owners])
-        return values if self._best is None else np.minimum(values, membership @ self._best)
+        if self._best is None:
+            return values
+        rising = np.sort(membership * self._best, axis=1)
+        return np.asarray(np.minimum(values, rising[:, self.n - self._most :].sum(axis=1)))
 
 
 class PlanTree:
@@ -98,6 +102,8 @@ class PlanTree:
             return
         is_plan = bool((partial != OPEN).all())
         plan = np.where(partial == OPEN, attacks.elements, partial)
+        if (limit := self._problem.choice_limit) is not None:
+            plan = limit.rest(plan, (partial != OPEN).astype(np.float64))
         if is_plan and plan.tobytes() in self._attacked and is_largest and bound == -node[0]:
             self._settle(plan, bound, budget)
             return
@@ -133,7 +139,7 @@ class PlanTree:
 
     def _push(self, partial: IntArray, bound: float) -> None:
         """The parts of a node, one for each element of a robot of the group that the known attacks leave."""
-        for e in self._elements_of(self._robot(partial)):
+        for e in self._elements_of(self._robot(partial), partial):
             child = partial.copy()
             child[self._problem.robot[e]] = e
             self._keep(child, bound)
@@ -151,8 +157,12 @@ class PlanTree:
         else:
             self._last.append(one)
 
-    def _elements_of(self, robot: int) -> IntArray:
-        return self._problem.choices[robot]
+    def _elements_of(self, robot: int, partial: IntArray) -> IntArray:
+        """Elements that an open robot may take beside those that are decided: its idle one if enough are busy."""
+        limit = self._problem.choice_limit
+        if limit is None or int((limit.busy(partial) & (partial != OPEN)).sum()) < limit.most:
+            return self._problem.choices[robot]
+        return limit.idle[robot : robot + 1]
 
     def _robot(self, partial: IntArray) -> int:
         """The open robot whose decision lowers most what the worst known attack leaves of its best group."""
@@ -165,7 +175,7 @@ class PlanTree:
     def _decided(self, partial: IntArray, group: Iterable[int], robot: int) -> float:
         """The most that a group is worth once one robot is decided."""
         values = []
-        for e in self._elements_of(robot):
+        for e in self._elements_of(robot, partial):
             child = partial.copy()
             child[robot] = e
             values.append(self._group_value(child, group))
@@ -181,5 +191,5 @@ class PlanTree:
         """Bound the value of a group: its open robots hold all their elements."""
         held: set[int] = set()
         for i in group:
-            held.update(self._elements_of(i).tolist() if partial[i] == OPEN else (int(partial[i]),))
+            held.update(self._elements_of(i, partial).tolist() if partial[i] == OPEN else (int(partial[i]),))
         return self._worth(frozenset(held))

@@ -92,7 +92,8 @@ class RowSearch:
             best = int(np.argmax(weight - taken))
             plan[i] = choice[best]
             used[int(columns.column[choice[best]])] = int(taken[best]) + 1
-        return plan
+        limit = self._problem.choice_limit
+        return plan if limit is None else limit.rest(plan, point[plan])
 
     def _add(self, groups: list[frozenset[int]]) -> bool:
         """Add what an attack leaves: the robots of all groups that may be worth more than the best plan known."""

@@ -188,8 +188,13 @@ class RowBound:
         for kind in range(kinds):
             own = np.flatnonzero(self._columns.kinds == kind)
             entries.append((own + values + 1, np.ones(len(own))))
-        sides = np.append(np.zeros(len(self._outcomes)), self._columns.sizes.astype(np.float64))
-        lower = np.append(np.full(len(self._outcomes), -np.inf), self._columns.sizes.astype(np.float64))
+        robots = self._columns.sizes.astype(np.float64)
+        sides = np.append(np.zeros(len(self._outcomes)), robots)
+        lower = np.append(np.full(len(self._outcomes), -np.inf), robots)
+        if (limit := self._problem.choice_limit) is not None:
+            own = np.setdiff1d(np.arange(columns), self._columns.column[limit.idle])
+            entries.append((own + values + 1, np.ones(len(own))))
+            sides, lower = np.append(sides, float(limit.most)), np.append(lower, -np.inf)
         cost, least = np.zeros(values + 1 + columns), np.zeros(values + 1 + columns)
         cost[values], least[: values + 1] = 1.0, -np.inf
         program = LinearProgram(cost, least, rows=_rows(entries, lower, sides), maximise=True)
@@ -212,7 +217,8 @@ class RowBound:
         """Lower the bound by the inequality that the multipliers suggest, summed anew."""
         outcomes, parts = len(self._outcomes), self._parts.n_parts
         of_outcome = np.abs(duals[:outcomes])
-        of_row = np.abs(duals[outcomes + len(self._columns.sizes) :])
+        limits = int(self._problem.at_most is not None)
+        of_row = np.abs(duals[outcomes + len(self._columns.sizes) + limits :])
         place = np.array([row.outcome * parts + row.part for row in self._rows])
         total = np.bincount(place, of_row, outcomes * parts)
         due = np.repeat(of_outcome, parts) * np.tile(self._parts.weights, outcomes)
@@ -230,7 +236,7 @@ class RowBound:
             size += float(multiplier[k]) * abs(row.bound.constant)
             gains[touching] += multiplier[k] * (row.bound.gains * left)
             terms += 1
-        best = sum(float(gains[choice].max()) for choice in self._problem.choices)
+        best = self._best(gains)
         whole = float(of_outcome.sum())
         if whole <= 0:
             return
@@ -238,6 +244,12 @@ class RowBound:
         # up to four roundings.
         slack = (terms + self._problem.n_robots + outcomes + 10) * np.finfo(np.float64).eps * (size + best)
         self.upper = min(self.upper, float((constant + best + slack) / whole) * (1 + 4 * np.finfo(np.float64).eps))
+
+    def _best(self, gains: FloatArray) -> float:
+        """The largest sum of gains (E,) of a plan."""
+        choices, limit = self._problem.choices, self._problem.choice_limit
+        plan = None if limit is None else limit.best_plan(gains, choices)
+        return sum(float(gains[choice].max()) for choice in choices) if plan is None else float(gains[plan].sum())
 
 
 def _rows(entries: list[tuple[IntArray, FloatArray]], lower: FloatArray, upper: FloatArray) -> Rows:

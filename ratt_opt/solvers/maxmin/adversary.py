@@ -205,7 +205,7 @@ class Adversary:
         known = len(self.pool)
         owners = np.arange(self.problem.n_robots)
         objective = self.pool.objective.with_information(of_robot)
-        relaxed = replace(self.problem, objective=objective, robot=owners)
+        relaxed = replace(self.problem, objective=objective, robot=owners, at_most=None)
         if len(owners) <= SEARCHED_BY_SIZE:
             self.pool.add(greedy_attack(relaxed, owners).attack)
         self._remember(relaxed, owners, self._attack_relaxed(relaxed, owners))

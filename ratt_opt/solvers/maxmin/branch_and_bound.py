@@ -44,6 +44,7 @@ class BranchAndBound:
 
     def __init__(self, known: Known, *, depth_first: bool = False) -> None:
         self.task, self.pool = known.task, known.incumbent.pool
+        self.limit = self.task.problem.choice_limit
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
         self.frontier = Frontier(self.rule, depth_first=depth_first)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
@@ -99,6 +100,10 @@ class BranchAndBound:
         if narrowed is None:
             return None
         self.frontier.current = node = narrowed
+        if self.limit is not None and not self.limit.has_plan(node.choices):
+            node.tighten(Leaf(cuts=(), weights=()), 0.0)
+            self.frontier.close(node)
+            return None
         nodes, stalls = slices.budget.nodes, 0
         allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
         hulls = self.rounds.hulls_at(nodes)
@@ -116,7 +121,7 @@ class BranchAndBound:
             if self.rule.closes(node.bound):
                 self.frontier.close(node)
                 return None
-            plan = relaxed.rounded(self.task.choices)
+            plan = relaxed.rounded(self.task.choices, self.limit)
             if self.incumbent.offer(plan):
                 self.incumbent.improve(plan)
             self.frontier.current = node = self._eliminate(node, *found)

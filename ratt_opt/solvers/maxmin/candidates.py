@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,40 +16,89 @@ if TYPE_CHECKING:
 
 __all__ = ["Candidates", "climb"]
 
+LARGEST_BLOCK = 4_000_000
+"""Numbers of a block of plans at most: some tens of megabytes."""
+
 
 def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget, softness: float = 0.0) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
     ``plan`` : (N,) element of each robot to start from; not changed. If the time is up, the pass ends where it is.
     ``softness`` : of the mean of small values that judges; 0 for the smallest value
+
+    If no more robots may be busy, an idle one takes an element as a busy one rests.
     """
-    objective = pool.objective
+    objective, limit = pool.objective, problem.choice_limit
     current = plan.copy()
-    points = pool.group_points(objective.information[current])
-    base = objective.value(points)
-    value = float(_judged(pool.outcome_values(base), softness))
+    as_it_is = _Rested.of(pool, current, None)
+    value = float(_judged(pool.outcome_values(as_it_is.values[0]), softness))
+    rested: list[_Rested] | None = None
     unchanged, i = 0, 0
     seen = {current.tobytes()}  # with information of 1e12 times the prior, rounding makes plans improve in a circle
     while unchanged < problem.n_robots and not budget.is_over:
-        choice = problem.choices[i]
-        rows = np.flatnonzero(pool.membership()[:, i])
-        others = choice[choice != current[i]]
         unchanged += 1
-        if len(others) and len(rows):
-            change = objective.information[others] - objective.information[current[i]]
-            values = np.repeat(base[None], len(others), axis=0)
-            values[:, rows] = objective.value(points[rows][None] + change[:, None])
-            worst = _judged(pool.outcome_values(values), softness)
-            k = int(worst.argmax())
-            if worst[k] > value + objective.least_improvement(value):  # a tie is no improvement
-                current[i], value, base = others[k], float(worst[k]), values[k]
-                points[rows] += change[k]
-                unchanged = 0
-                if (key := current.tobytes()) in seen:
-                    return current
-                seen.add(key)
+        waits = limit is not None and not limit.busy(current)[i] and limit.busy(current).sum() >= limit.most
+        if waits and rested is None:
+            rested = _Rested.one_each(pool, current)
+        least = value + objective.least_improvement(value)  # a tie is no improvement
+        found = [one.best_exchange(pool, i, softness) for one in ((rested or []) if waits else [as_it_is])]
+        best = max(found, key=lambda exchange: exchange[0], default=(-np.inf, current))
+        if best[0] > least:
+            current, value = best[1], best[0]
+            as_it_is, rested, unchanged = _Rested.of(pool, current, None), None, 0
+            if (key := current.tobytes()) in seen:
+                return current
+            seen.add(key)
         i = (i + 1) % problem.n_robots
     return current
+
+
+@dataclass(frozen=True, slots=True)
+class _Rested:
+    """Plans (K, N), the posterior information (K, G, M, d, d) of each group, and its value (K, G)."""
+
+    plans: IntArray
+    points: FloatArray
+    values: FloatArray
+
+    @classmethod
+    def of(cls, pool: OutcomePool, plan: IntArray, resting: IntArray | None) -> _Rested:
+        """The plan as it is, or plans in which one robot each is idle."""
+        objective, membership, limit = pool.objective, pool.membership(), pool.problem.choice_limit
+        points = pool.group_points(objective.information[plan])[None]
+        if limit is None or resting is None:
+            return cls(plan[None], points, objective.value(points))
+        plans = np.repeat(plan[None], len(resting), axis=0)
+        plans[np.arange(len(resting)), resting] = limit.idle[resting]
+        lost = objective.information[limit.idle[resting]] - objective.information[plan[resting]]
+        points = points + membership[:, resting].T[..., None, None, None] * lost[:, None]
+        return cls(plans, points, objective.value(points))
+
+    @classmethod
+    def one_each(cls, pool: OutcomePool, plan: IntArray) -> list[_Rested]:
+        """Every plan in which one of the busy robots is idle, in blocks of some megabytes."""
+        limit = pool.problem.choice_limit
+        assert limit is not None
+        busy = np.flatnonzero(limit.busy(plan))
+        widest = max(map(len, pool.problem.choices)) * len(pool.groups) * pool.objective.information[0].size
+        most = max(LARGEST_BLOCK // widest, 1)
+        return [cls.of(pool, plan, busy[k : k + most]) for k in range(0, len(busy), most)]
+
+    def best_exchange(self, pool: OutcomePool, robot: int, softness: float) -> tuple[float, IntArray]:
+        """The largest value that another element of a robot leaves, and its plan; none if it is in no group."""
+        objective, plan = pool.objective, self.plans[0]
+        choice, rows = pool.problem.choices[robot], np.flatnonzero(pool.membership()[:, robot])
+        others = choice[choice != plan[robot]]
+        if not (len(others) and len(rows)):
+            return -np.inf, plan
+        change = objective.information[others] - objective.information[plan[robot]]
+        values = np.repeat(self.values[:, None], len(others), axis=1)
+        values[..., rows] = objective.value(self.points[:, None, rows] + change[None, :, None])
+        worst = _judged(pool.outcome_values(values), softness)
+        k, e = np.unravel_index(int(worst.argmax()), worst.shape)
+        changed = self.plans[k].copy()
+        changed[robot] = others[e]
+        return float(worst[k, e]), changed
 
 
 def _judged(values: FloatArray, softness: float) -> FloatArray:

@@ -32,6 +32,7 @@ class CutStore:
     def __init__(self, task: Task, pool: OutcomePool) -> None:
         self.task, self.pool = task, pool
         self.rows: RowSeparation | None = None
+        self._limit = task.problem.choice_limit
         self._cuts: list[GroupCut | Row] = []
         self._origin = np.zeros((64, 2), dtype=np.int64)
         self._constants = np.zeros(64)
@@ -98,9 +99,17 @@ class CutStore:
         return np.asarray(winners[self.outcomes] == self.groups)
 
     def leaf_bound(self, leaf: Leaf, choices: Sequence[IntArray]) -> tuple[float, FloatArray]:
-        """The bound of a leaf's convex combination over plans within ``choices``, and its combined scores."""
+        """The bound of a leaf's convex combination over plans within ``choices``, and its combined scores.
+
+        A leaf without cuts bounds nothing, unless more robots would have to be busy than may be.
+        """
         cuts = list(leaf.cuts)
-        return combined_bound(self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices)
+        if not cuts:
+            is_empty = self._limit is not None and not self._limit.has_plan(choices)
+            return 0.0 if is_empty else np.inf, np.zeros(len(self._scores))
+        return combined_bound(
+            self._constants[cuts], self._scores[:, cuts].T, np.array(leaf.weights), choices, self._limit
+        )
 
     def record(self, k: int) -> TangentCut:
         """One cut as part of a proof."""

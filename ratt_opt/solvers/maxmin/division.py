@@ -103,11 +103,29 @@ class Division:
 
     def divide(self, node: TreeNode, relaxed: RelaxedPlan | None) -> None:
         """Branch on an undecided winner that would cut the relaxed plan off, else on the most mixed robot."""
-        children = self._by_winner(node, relaxed) or self._by_elements(node, relaxed)
+        children = self._by_rest(node, relaxed) or self._by_winner(node, relaxed) or self._by_elements(node, relaxed)
         if not node.split:
             self._settle(node)
         for child in children:
             self.frontier.push(child)
+
+    def _by_rest(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
+        """Children in which a robot is idle or busy, if few may be busy: the one that the relaxed plan decides least.
+
+        Who is busy comes before who wins: an attack pairs busy robots with idle ones, in any plan.
+        """
+        limit = self.task.problem.choice_limit
+        if limit is None:
+            return []
+        open_robots = [i for i, c in enumerate(node.choices) if len(c) > 1 and limit.idle[i] in c]
+        weights = np.full(limit.idle.shape, 0.5) if relaxed is None else relaxed.selection[limit.idle]
+        i = min(open_robots, key=lambda r: abs(float(weights[r]) - 0.5), default=None)
+        if i is None:
+            return []
+        rests = node.choices[i] == limit.idle[i]
+        children = [node.child(with_choice(node.choices, i, node.choices[i][part])) for part in (rests, ~rests)]
+        node.divide(i, children, self.task)
+        return children
 
     def _by_winner(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
         """Children by the winner of an outcome; none if no undecided one would cut the relaxed plan off."""

@@ -256,7 +256,7 @@ def break_ties(incumbent: Incumbent, budget: Budget) -> None:
 
 def _richer(incumbent: Incumbent, plan: IntArray, budget: Budget) -> IntArray:
     """A plan of no smaller value under the known outcomes that no exchange makes worth more without attack."""
-    problem, pool = incumbent.problem, incumbent.pool
+    problem, pool, limit = incumbent.problem, incumbent.pool, incumbent.problem.choice_limit
     rounding, unattacked = problem.objective.rounding, OutcomePool(problem)
     unattacked.add(Attack())
     least = min(incumbent.proved.lower, pool.plan_value(plan))
@@ -271,6 +271,8 @@ def _richer(incumbent: Incumbent, plan: IntArray, budget: Budget) -> IntArray:
                     return current
                 other = current.copy()
                 other[i] = e
+                if limit is not None and not limit.allows(other):
+                    continue
                 value = unattacked.plan_value(other)
                 if value > best + NO_MORE * abs(best) + rounding and pool.plan_value(other) >= least:
                     best, current, improved = value, other, True

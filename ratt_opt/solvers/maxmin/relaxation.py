@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.choice_limit import ChoiceLimit
     from ratt_opt.solvers.maxmin.adversary import Adversary
     from ratt_opt.solvers.maxmin.cut_store import CutStore
     from ratt_opt.solvers.maxmin.elements import Choices
@@ -52,24 +53,30 @@ class RelaxedPlan:
     duals: FloatArray
     level: float
 
-    def rounded(self, choices: Choices) -> IntArray:
-        """(N,) the element of largest weight of each robot."""
-        return np.array([choice[self.selection[choice].argmax()] for choice in choices])
+    def rounded(self, choices: Choices, limit: ChoiceLimit | None = None) -> IntArray:
+        """(N,) the element of largest weight of each robot; beyond the limit, robots of small weights are idle."""
+        plan = np.array([choice[self.selection[choice].argmax()] for choice in choices])
+        return plan if limit is None else limit.rest(plan, self.selection[plan])
 
 
 class NodeProgram:
     """``max t`` with ``t <= constant_k + scores_k . z`` for the cuts in use, ``sum_e z_e = 1`` for each robot.
 
+    If few robots may be busy, their elements add up to no more.
+
     One program for the whole search: nodes differ in column bounds and in the cuts they use, so each
     solve starts from the last basis. Only the multipliers are used; every bound is derived from them anew.
     """
 
-    def __init__(self, n_elements: int, choices: Choices) -> None:
-        self._n, self._robots = n_elements, len(choices)
+    def __init__(self, n_elements: int, choices: Choices, limit: ChoiceLimit | None = None) -> None:
+        self._n, self._first_cut = n_elements, len(choices) + (limit is not None)
         zeros, ones = np.zeros(n_elements), np.ones(n_elements)
         owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], 1.0, 1.0)
         cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(ones, np.inf)
         self._program = LinearProgram(cost, lower, upper, rows=owners, maximise=True, solver="simplex")
+        if limit is not None:
+            busy = np.setdiff1d(np.concatenate(choices), limit.idle).tolist()
+            self._program.add_rows(rows_of([(busy, [1.0] * len(busy))], -np.inf, float(limit.most)))
         self._allowed = np.ones(n_elements, dtype=np.bool_)
         self.in_use: list[int] = []
         """Cuts that are rows now, in row order."""
@@ -103,7 +110,7 @@ class NodeProgram:
         self._add_fresh()
         positions = [position for position, cut in enumerate(self.in_use) if gone(cut)]
         if positions:
-            self._program.delete_rows(np.array(positions) + self._robots)
+            self._program.delete_rows(np.array(positions) + self._first_cut)
             for position in positions:
                 del self._idle[self.in_use[position]]
             kept = set(positions)
@@ -127,7 +134,7 @@ class NodeProgram:
         claim = self._program.solve(seconds)
         if not claim.is_optimal:
             return None
-        duals = np.abs(claim.duals[self._robots :])
+        duals = np.abs(claim.duals[self._first_cut :])
         for cut, dual in zip(self.in_use, duals, strict=True):
             self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
         columns = claim.x[: self._n]
@@ -146,7 +153,7 @@ class CutRounds:
         self.task, self.pool = cuts.task, cuts.pool
         self.cuts, self.winners, self.adversary, self._rows_from = cuts, winners, adversary, rows_from
         self._solves, self._params = 0, RowParams()
-        self._program = NodeProgram(self.task.objective.n, self.task.choices)
+        self._program = NodeProgram(self.task.objective.n, self.task.choices, self.task.problem.choice_limit)
 
     @property
     def begins_with_rows(self) -> bool:

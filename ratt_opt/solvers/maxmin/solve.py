@@ -90,7 +90,7 @@ def solve_maxmin(
     Source: outer approximation (Duran and Grossmann 1986) of the concave relaxation of eqn:resi_target_prob.
     """
     check_limits(gap, time_limit, max_nodes)
-    check_problem(problem)
+    check_problem(problem, knows_at_most=True)
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return solve_by_values(problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap))
@@ -271,7 +271,7 @@ def nonrobust_search(
     ``time_limit`` : seconds; the plan is proved best if ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
     ``budget`` : an outer search's budget: its seconds and interrupts count too
     """
-    unattacked = replace(check_problem(problem), alpha_s=0, alpha_c=0)
+    unattacked = replace(check_problem(problem, knows_at_most=True), alpha_s=0, alpha_c=0)
     own = Budget.inside(budget, time_limit)
     with np.errstate(over="ignore"):
         few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS

@@ -230,8 +230,13 @@ class UpperBoundPortfolio:
 
 
 def _search_in_depth(known: Known) -> SearchByLevels | None:
-    """The search if robots see few targets and the criterion is trace or log-det, of up to 64 dimensions."""
+    """The search if robots see few targets and the criterion is trace or log-det, of up to 64 dimensions.
+
+    It knows no limit on how many robots are busy.
+    """
     objective = known.task.objective
+    if known.task.problem.at_most is not None:
+        return None
     if objective.compiled_code not in SUMS or objective.dimension > LARGEST_DIMENSION:
         return None
     seen = np.trace(objective.information, axis1=-2, axis2=-1) > 0

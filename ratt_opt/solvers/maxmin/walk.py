@@ -70,4 +70,5 @@ class Walk:
         changed, choices = self._plan.copy(), self._incumbent.problem.choices
         for i in self._rng.choice(len(changed), min(robots, len(changed)), replace=False).tolist():
             changed[i] = self._rng.choice(choices[i])
-        return changed
+        limit = self._incumbent.problem.choice_limit
+        return changed if limit is None else limit.rest(changed, self._rng.random(len(changed)))

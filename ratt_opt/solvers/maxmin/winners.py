@@ -89,14 +89,24 @@ class _ClosingSearch:
             point: FloatArray = self.objective.prior_information + mixed
             cut = tangent_cut(self.problem, self.members, point)
             self.cuts += 1
-            bound, scores = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), choices)
+            bound, scores = combined_bound(
+                np.array([cut.constant]), cut.scores[None], np.ones(1), choices, self.problem.choice_limit
+            )
             if self.rule.closes(bound):
                 return ClosedGroup(bound=bound, cut=cut)
-            plan = np.array([choice[scores[choice].argmax()] for choice in own], dtype=np.int64)
+            plan = self._best(scores, choices)
             value = float(self.objective.value(self.objective.posterior_information(plan)[None])[0])
             if not self.rule.closes(value) or self.cuts > LARGEST_PROOF:
                 raise _RefutedError
         return self._divide(choices, selection, point, cut.target)
+
+    def _best(self, scores: FloatArray, choices: Choices) -> IntArray:
+        """(members,) the elements of largest scores that a plan may have."""
+        limit = self.problem.choice_limit
+        best = None if limit is None else limit.best_plan(scores, choices)
+        if best is not None:
+            return best[list(self.members)]
+        return np.array([choices[i][scores[choices[i]].argmax()] for i in self.members], dtype=np.int64)
 
     def _divide(self, choices: Choices, selection: FloatArray, point: FloatArray, target: int | None) -> ClosedGroup:
         inside, points = self.inside[None], point[None]
