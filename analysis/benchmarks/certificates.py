@@ -1,6 +1,6 @@
 """Certificates: the time to write and to verify one against the search it certifies, their size, and what is proved.
 
-Run as ``python -m analysis.benchmarks.certificates [--robots 10 20 30] [--seeds K] [--seconds S]``.
+Run as ``python -m analysis.benchmarks.certificates [--robots 10 20 30] [--seeds K] [--gap G] [--seconds S]``.
 Times are processor time, the worst over the seeds; the ratio is verification over the search, in the same run.
 """
 
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 KILOBYTE = 1000
 
 
-def measure(problem: Problem, seconds: float, path: Path) -> dict[str, float]:
+def measure(problem: Problem, gap: float, seconds: float, path: Path) -> dict[str, float]:
     """Search, certify and verify once."""
     began = time.process_time()
-    optimum = solve_maxmin(problem, time_limit=seconds)
+    optimum = solve_maxmin(problem, gap=gap, time_limit=seconds)
     search = time.process_time() - began
     write = processor_seconds(lambda: certify(problem, optimum, path))
     verified = []
@@ -50,6 +50,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--robots", type=int, nargs="+", default=[10, 20, 30], choices=sorted(SETTINGS))
     parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--gap", type=float, default=1e-9, help="gap at which each search stops")
     parser.add_argument("--seconds", type=float, default=60.0, help="time limit of each search")
     options = parser.parse_args()
     for n_robots in options.robots:
@@ -62,7 +63,7 @@ def main() -> None:
                     scenario = random_scenario(n_robots, n_targets, alpha_s=alpha_s, alpha_c=alpha_c, seed=seed)
                     with tempfile.TemporaryDirectory() as folder:
                         path = Path(folder) / "certificate.json"
-                        runs.append(measure(scenario.problem(objective), options.seconds, path))
+                        runs.append(measure(scenario.problem(objective), options.gap, options.seconds, path))
                 worst = {name: max(run[name] for run in runs) for name in runs[0]}
                 unproved = int(sum(run["lower end unproved"] for run in runs))
                 rows.append(
@@ -73,7 +74,8 @@ def main() -> None:
                         "lower end unproved": f"{unproved} of {options.seeds}",
                     }
                 )
-        print_table(f"certificates, N = {n_robots}, M = {n_targets}, worst of {options.seeds} seeds", rows)
+        said = f"gap {options.gap:g}, worst of {options.seeds} seeds"
+        print_table(f"certificates, N = {n_robots}, M = {n_targets}, {said}", rows)
 
 
 if __name__ == "__main__":

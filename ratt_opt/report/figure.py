@@ -49,11 +49,12 @@ def plan_figure(report: Findings, picture: Picture) -> Figure:
     draw_bars(right, report)
     share = share_text(plan.worst_case.lower, report.upper)
     share = share if share.startswith("optimal") else f"{share} of the best possible"
+    unit = f" {literal(report.unit)}" if report.unit else ""
     figure.suptitle(
         f"{literal(plan.planner)} plan. "
         f"Worst attack: {len(attack.sensing)} of {report.problem.n_robots} robots blinded, "
         f"{len(attack.links)} of {len(report.problem.communication.links)} links cut.\n"
-        f"Worst-case value {down(plan.worst_case.lower, 6)}: {share}.",
+        f"Worst-case value {down(plan.worst_case.lower, 6)}{unit}: {share}.",
         fontsize=11.5,
     )
     choose_fonts(figure)

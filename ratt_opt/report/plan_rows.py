@@ -11,12 +11,15 @@ if TYPE_CHECKING:
 
     from ratt_opt.findings import Findings
 
-__all__ = ["PLAN_COLUMNS", "plan_rows"]
+__all__ = ["PLAN_COLUMNS", "PLAN_HEADS", "plan_rows"]
 
 PLAN_COLUMNS = (
     *("robot", "name", "element", "control", "speed", "turn_rate"),
     *("x", "y", "heading", "bait", "under attack", "group"),
 )
+_UNITS = {"speed": "m/s", "turn_rate": "rad/s", "x": "m", "y": "m", "heading": "rad"}
+PLAN_HEADS = tuple(name.replace("_", " ") + (f" [{_UNITS[name]}]" if name in _UNITS else "") for name in PLAN_COLUMNS)
+"""Heads of the columns in a table for readers."""
 
 
 def plan_rows(report: Findings) -> Iterator[tuple[object, ...]]:

@@ -173,8 +173,7 @@ def _link(link: tuple[int, int], names: Sequence[str]) -> str:
 
 
 def _planners(report: Findings) -> Table:
-    unit = f" [{report.unit}]" if report.unit else ""
-    value = f"worst-case value{unit}"
+    value = f"worst-case value{_unit(report)}"
     table = _table("planners under their worst attacks", "planner", value, "share of the best possible", "evaluations")
     for plan in report.plans:
         share = share_text(plan.worst_case.lower, report.upper)
@@ -183,6 +182,11 @@ def _planners(report: Findings) -> Table:
     lines = ["* recommended: the best proved worst case", *omitted_texts(report), *report.remarks]
     table.caption = "\n".join(lines)
     return table
+
+
+def _unit(report: Findings) -> str:
+    """The unit of the values in brackets, after a space; empty if the criterion has none."""
+    return f" [{report.unit}]" if report.unit else ""
 
 
 def omitted_texts(report: Findings) -> list[str]:
@@ -203,9 +207,9 @@ def _plan(report: Findings) -> Table:
 
 
 def _bracket(report: Findings) -> Table:
-    table = _table("how good that is", "quantity", "value")
+    table = _table("how good that is", "quantity", "result")
     optimum, problem = report.optimum, report.problem
-    table.add_row("best possible worst-case value", bracket_text(optimum.lower, report.upper))
+    table.add_row(f"best possible worst-case value{_unit(report)}", bracket_text(optimum.lower, report.upper))
     if optimum.posterior_gap is not None:
         table.add_row("gap, of the criterion left after measuring", up(optimum.posterior_gap, 3))
     table.add_row("search stopped because", optimum.stop.value)

@@ -58,7 +58,7 @@ class Results:
     @property
     def unit(self) -> str:
         """Unit of the values, if it is the same in all cases, else empty."""
-        if not set(self.study.metrics) & set(VALUES):
+        if not {metric for _, _, metric in self.columns.values()} & set(VALUES):
             return ""
         units = {_unit(self.study, case) for case in self.study.cases}
         return units.pop() if len(units) == 1 else ""

@@ -19,9 +19,9 @@ __all__ = ["Estimate", "Mean", "Verdict", "column", "estimate", "headed", "judge
 
 LEVEL = 0.95
 """Confidence of every interval."""
-UNITS = {"trace": "m²", "mse": "m²", "rmse": "m", "final": "m", "largest": "m"}
+UNITS = {"trace": "m²", "mse": "m²", "rmse": "m", "final": "m", "largest": "m", "optimum/trace_bound": "m²"}
 """Units of metrics; values have that of their criterion,"""
-VALUES = ("value", "proved")
+VALUES = ("value", "proved", "optimum/lower", "optimum/upper")
 """and these are values."""
 
 

@@ -256,6 +256,20 @@ def cameras(case: Case, seeds: object) -> ro.Scenario:
     return ro.limited_view_scenario(case.n_robots, case.n_targets, view=60, **sizes)
 
 
+def test_brackets_of_the_optimum_have_the_unit_of_values() -> None:
+    for metrics in (("value",), ("mse",)):
+        study = Study(
+            name="s",
+            cases=CASES[:1],
+            planners=("ratt",),
+            attackers=("worst",),
+            metrics=metrics,
+            quantities=("optimum",),
+        )
+        heads, _ = run(study, trials=1).mean_rows()
+        assert {"optimum/lower [m²]", "optimum/upper [m²]", f"{metrics[0]} [m²]"} <= set(heads)
+
+
 def test_a_study_makes_scenarios_of_its_own() -> None:
     study = Study(
         name="s", cases=CASES[1:], planners=("ratt",), attackers=("worst",), metrics=("value", "mse"), problem=cameras

@@ -15,7 +15,7 @@ from ratt_opt.report.notebook import html_table
 from ratt_opt.report.page.map_drawing import legend_html, map_svg
 from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, looks_of
 from ratt_opt.report.picture import picture_of
-from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
+from ratt_opt.report.plan_rows import PLAN_HEADS, plan_rows
 from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, verdict_text
 
 if TYPE_CHECKING:
@@ -54,14 +54,13 @@ def report_page(report: Findings) -> str:
 
 def _sections(report: Findings) -> Iterator[str]:
     plan = report.recommended
-    unit = f" {report.unit}" if len(report.unit) < LONG else f" [{report.unit}]"
-    kept = bracket_text(plan.worst_case.lower, plan.worst_case.upper)
+    kept = _with_unit(bracket_text(plan.worst_case.lower, plan.worst_case.upper), report)
     share = share_text(plan.worst_case.lower, report.upper)
     yield (
-        f"<p>This plan has a worst-case value of <strong>{kept}{escape(unit)}</strong> ({escape(report.objective)}), "
+        f"<p>This plan has a worst-case value of <strong>{escape(kept)}</strong> ({escape(report.objective)}), "
         f"under the worst attack that blinds at most {counted(report.problem.alpha_s, 'robot')} and cuts at most "
         f"{counted(report.problem.alpha_c, 'link')}. {escape(_share_sentence(share))} "
-        f"No plan has more than {up(report.upper, 10)}.</p>"
+        f"No plan has more than {escape(_with_unit(up(report.upper, 10), report))}.</p>"
     )
     yield from _map_section(report)
     yield from _planner_section(report)
@@ -101,11 +100,17 @@ def _map_section(report: Findings) -> Iterator[str]:
     yield "Point at a robot or target, or tab to it.</p></section>"
 
 
+def _with_unit(value: str, report: Findings) -> str:
+    """A value in words with its unit, in brackets if that is words and not a symbol."""
+    unit = report.unit if len(report.unit) < LONG else f"[{report.unit}]"
+    return f"{value} {unit}".rstrip()
+
+
 def _caption(name: str, view: AssessedPlan, report: Findings) -> str:
     attack, known = view.worst_case.attack, describe(report.problem, report.source)
     blinded = ", ".join(known.robot(i) for i in sorted(attack.sensing)) or "none"
     cut = " ".join(f"{i}-{j}" for i, j in sorted(attack.links)) or "none"
-    left = f"value left {up(view.worst_case.upper, 10)}"
+    left = f"value left {_with_unit(up(view.worst_case.upper, 10), report)}"
     return f"{VIEW_TITLES[name]}: {left}; blinded robots: {blinded}; cut links: {cut}"
 
 
@@ -147,8 +152,8 @@ def _trust_section(report: Findings) -> Iterator[str]:
     if report.certificate.certificate is not None:
         yield " Check it again, in a program that shares nothing with the search: "
         yield "<code>ratt-opt verify certificate.json</code>."
-    optimum = bracket_text(report.optimum.lower, report.upper)
-    yield f"</p><p>Best possible: {optimum}; the search for it stopped because: {report.optimum.stop.value}.</p>"
+    best = escape(_with_unit(bracket_text(report.optimum.lower, report.upper), report))
+    yield f"</p><p>Best possible: {best}; the search for it stopped because: {report.optimum.stop.value}.</p>"
     if "guarantees" in report.omitted:
         yield "</section>"
         return
@@ -163,5 +168,5 @@ def _trust_section(report: Findings) -> Iterator[str]:
 def _plan_section(report: Findings) -> Iterator[str]:
     rows = [[f"{x:.4g}" if isinstance(x, float) else x for x in row] for row in plan_rows(report)]
     yield '<section aria-labelledby="plan"><h2 id="plan">The plan</h2><div class="wide">'
-    yield html_table("Positions are those after the control", PLAN_COLUMNS, rows)
+    yield html_table("Positions are those after the control", PLAN_HEADS, rows)
     yield "</div></section>"
