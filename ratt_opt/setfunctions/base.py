@@ -174,6 +174,11 @@ class SetFunction(ABC):
         """
         return 1.0
 
+    @property
+    def spacing(self) -> float:
+        """Number of which all values are whole multiples, exactly; 0 if none is known."""
+        return 0.0
+
     def are_alike(self, elements: IntArray) -> bool:  # noqa: ARG002  (nothing is known of them)
         """Return whether theory says that the value of a set of these elements depends on its number alone."""
         return False

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["BestElements", "Coverage", "FacilityLocation"]
 
+MOST_WHOLE = 2**40
+"""Whole numbers up to this are divided and multiplied without rounding to another one."""
+
 
 class BestElements(SumFunction):
     """A weighted sum over parts of the best utility that any element of the set has for the part (0 without one).
@@ -59,6 +62,14 @@ class BestElements(SumFunction):
     def has_exact_values(self) -> bool:
         """True if all summands are whole."""
         return are_exact(self.utility * self.weights, self.utility.shape[1]) and are_exact(self.utility, 1)
+
+    @property
+    def spacing(self) -> float:
+        """The greatest common divisor of all summands, if they are whole."""
+        summands = np.unique(self.utility * self.weights)
+        if not self.has_exact_values or summands.max(initial=0.0) >= MOST_WHOLE:
+            return 0.0
+        return float(np.gcd.reduce(summands.astype(np.int64), initial=0))
 
     def overestimator(self, part: int, share: FloatArray) -> Overestimator:
         """The concave envelope at a fractional point (k,)."""

@@ -1,24 +1,16 @@
-"""Decomposable set functions: weighted sums of parts that few elements touch (Stobbe and Krause 2010).
-
-**Modular bounds of one part.** For a submodular, non-decreasing part and any set ``S``,
-``phi(T) <= phi(S) + sum of phi(S + e) - phi(S) over e in T - S`` (Nemhauser, Wolsey and Fisher 1978). If a part is the
-best of its elements, the sets ``S`` of all elements below a level give its concave envelope. A part with few elements
-has all its sets enumerated: multipliers of a small linear program over them, which a solver suggests, give the
-envelope at a point, and the constant is computed again as the largest difference over all sets.
-"""
+"""Decomposable set functions: weighted sums of parts that few elements touch (Stobbe and Krause 2010)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt._validation import check_finite, check_integer, check_nonnegative, check_subset, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.highs import LinearProgram, Rows
 from ratt_opt.setfunctions.base import SetFunction
-from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator, rounded_up
+from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
+from ratt_opt.setfunctions.part_bounds import PartBounder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -27,17 +19,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
-__all__ = ["Part", "PartBounds", "SumFunction"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PartBounds:
-    """Effort for the bounds of one part.
-
-    ``most_enumerated`` : elements of a part whose ``2**k`` sets are enumerated: exact bounds, for more work
-    """
-
-    most_enumerated: int = 8
+__all__ = ["Part", "SumFunction"]
 
 
 class Part:
@@ -101,7 +83,7 @@ class SumFunction(SetFunction, Decomposition):
 
     def __init__(self, n: int, parts: Sequence[Part] | int, weights: ArrayLike | None = None) -> None:
         self._n = check_integer("n", n, low=1)
-        self._bounds = _Bounds(PartBounds())
+        self._bounds = PartBounder(self)
         self._parts: tuple[Part, ...] = ()
         if isinstance(parts, (int, np.integer)):
             count = check_integer("parts", parts, low=0)
@@ -158,96 +140,8 @@ class SumFunction(SetFunction, Decomposition):
 
     def marginal_bounds(self, part: int) -> FloatArray:
         """(k,) exact if the part's sets are enumerated; else the value alone if it is submodular, or that of all."""
-        return self._bounds.marginals(self, part)
+        return self._bounds.marginals(part)
 
     def overestimator(self, part: int, share: FloatArray) -> Overestimator:
-        """The envelope if the part's sets are enumerated; else the best of the level sets, or monotonicity alone."""
-        return self._bounds.overestimator(self, part, share)
-
-
-class _Bounds:
-    """Bounds of parts by their values; those of level sets are kept."""
-
-    def __init__(self, params: PartBounds) -> None:
-        self._params = params
-        self._tables: dict[int, FloatArray] = {}
-        self._levels: dict[int, FloatArray] = {}
-        self._cuts: dict[tuple[int, float], Overestimator] = {}
-
-    def marginals(self, f: SumFunction, part: int) -> FloatArray:
-        k = len(f.touching(part))
-        if k <= self._params.most_enumerated:
-            table = self._table(f, part)
-            steps = [table.reshape(-1, 2, 1 << e) for e in range(k)]
-            return rounded_up(np.array([float((step[:, 1] - step[:, 0]).max()) for step in steps]))
-        if f.is_submodular:
-            return rounded_up(self._gains(f, part, np.zeros(k, dtype=np.bool_))[1])
-        ends = f.part_values(part, np.array([np.zeros(k), np.ones(k)], dtype=np.bool_))
-        return rounded_up(np.full(k, float(ends[1] - ends[0])))
-
-    def overestimator(self, f: SumFunction, part: int, share: FloatArray) -> Overestimator:
-        k = len(share)
-        if k <= self._params.most_enumerated:
-            return _envelope(self._table(f, part), share)
-        if f.is_submodular:
-            return self._best_level(f, part, share)
-        ends = f.part_values(part, np.array([np.zeros(k), np.ones(k)], dtype=np.bool_))
-        known = [Overestimator(float(ends[0]), self.marginals(f, part)), Overestimator(float(ends[1]), np.zeros(k))]
-        return min(known, key=lambda bound: bound.at(share))
-
-    def _best_level(self, f: SumFunction, part: int, share: FloatArray) -> Overestimator:
-        """Search the levels by thirds: the bound is convex in the level if the part is the best of its elements."""
-        if part not in self._levels:
-            alone = self._gains(f, part, np.zeros(len(share), dtype=np.bool_))[1]
-            self._levels[part] = np.append(-1.0, np.unique(alone))
-        low, high = 0, len(self._levels[part]) - 1
-        while high - low > 2:
-            third = (high - low) // 3
-            left, right = (self._at_level(f, part, k).at(share) for k in (low + third, high - third))
-            low, high = (low, high - third) if left <= right else (low + third, high)
-        return min((self._at_level(f, part, k) for k in range(low, high + 1)), key=lambda bound: bound.at(share))
-
-    def _at_level(self, f: SumFunction, part: int, position: int) -> Overestimator:
-        """Nemhauser and Wolsey's bound for the set of all elements whose value alone is at most a level."""
-        level = float(self._levels[part][position])
-        if (part, level) not in self._cuts:
-            alone = self.marginals_alone(f, part)
-            value, gains = self._gains(f, part, alone <= level)
-            self._cuts[part, level] = Overestimator(value, rounded_up(gains))
-        return self._cuts[part, level]
-
-    def marginals_alone(self, f: SumFunction, part: int) -> FloatArray:
-        """(k,) what each element adds to nothing."""
-        return self._gains(f, part, np.zeros(len(f.touching(part)), dtype=np.bool_))[1]
-
-    @staticmethod
-    def _gains(f: SumFunction, part: int, base: BoolArray) -> tuple[float, FloatArray]:
-        """Value of a set, and what each element adds to it; 0 inside the set."""
-        outside = np.flatnonzero(~base)
-        sets = np.tile(base, (len(outside) + 1, 1))
-        sets[np.arange(len(outside)), outside] = True
-        values, gains = f.part_values(part, sets), np.zeros(len(base))
-        gains[outside] = values[:-1] - values[-1]
-        return float(values[-1]), gains
-
-    def _table(self, f: SumFunction, part: int) -> FloatArray:
-        if part not in self._tables:
-            k = len(f.touching(part))
-            sets = (np.arange(2**k)[:, None] >> np.arange(k) & 1).astype(np.bool_)
-            self._tables[part] = np.asarray(f.part_values(part, sets), dtype=np.float64)
-        return self._tables[part]
-
-
-def _envelope(table: FloatArray, share: FloatArray) -> Overestimator:
-    """The concave envelope of a table (2**k,) at a point (k,): a linear program suggests, all sets prove."""
-    k, sets = len(share), len(table)
-    members = (np.arange(sets)[:, None] >> np.arange(k) & 1).astype(np.float64)
-    entries = np.column_stack([np.ones(sets), members])
-    columns = np.tile(np.arange(k + 1), sets)
-    rows = Rows(table, np.full(sets, np.inf), np.arange(sets + 1) * (k + 1), columns, entries.ravel())
-    found = LinearProgram(np.append(1.0, share), np.append(-np.inf, np.zeros(k)), rows=rows).solve()
-    gains = np.maximum(found.x[1:], 0.0) if len(found.x) == k + 1 else np.zeros(k)
-    # The sum of k gains and its difference from a value round k + 1 times.
-    sums = members @ gains
-    slack = (k + 1) * np.finfo(np.float64).eps * (sums.max() + np.abs(table).max())
-    return Overestimator(float((table - sums).max() + slack), gains)
+        """The envelope if the part's sets are enumerated; else a base set's bound, or monotonicity alone."""
+        return self._bounds.overestimator(part, share)

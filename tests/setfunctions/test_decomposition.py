@@ -136,8 +136,6 @@ def test_overestimators_are_envelopes_of_maxima_and_of_enumerated_parts():
     for f in sums(rng):
         for j in range(f.n_parts):
             k = len(f.touching(j))
-            if k == 9:
-                continue  # its sets are not enumerated
             share = rng.random(k)
             # At least 0 gains: the envelope of non-decreasing parts over all smaller points too.
             values, sets = f.part_values(j, subsets(k)), subsets(k)
@@ -168,12 +166,42 @@ def test_level_sets_bound_a_large_part_as_well_as_its_formula():
             assert own.overestimator(part, whole).at(whole) == pytest.approx(best)
 
 
+class Roots(ro.SumFunction):
+    """The root of a weight, and the largest weight: submodular parts of any size."""
+
+    is_submodular = is_non_decreasing = True
+
+    def __init__(self, weight):
+        super().__init__(len(weight), 2, [1.0, 3.0])
+        self.weight = weight
+
+    def touching(self, part):  # noqa: ARG002
+        return np.arange(self.n)
+
+    def part_values(self, part, membership):
+        return np.sqrt(membership @ self.weight) if part == 0 else (membership * self.weight).max(axis=1, initial=0.0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_base_sets_bound_every_set_of_a_large_submodular_part(seed):
+    rng = np.random.default_rng([9, seed])
+    f, sets = Roots(rng.exponential(size=14)), subsets(14)
+    for part in range(2):
+        values = f.part_values(part, sets)
+        for share in (np.zeros(14), np.ones(14), rng.random(14), (rng.random(14) < 0.3) * 1.0):
+            bound = f.overestimator(part, share)
+            assert (bound.gains >= 0).all()
+            assert (bound.constant + sets @ bound.gains - values).min() >= 0
+            if set(share) <= {0.0, 1.0}:  # a set: the bound touches there
+                assert bound.at(share) == pytest.approx(float(f.part_values(part, share[None] > 0)[0]))
+
+
 def test_large_parts_of_unknown_kind_are_bounded_by_monotonicity():
-    part = ro.Part(range(12), lambda membership: membership.sum(axis=1).astype(float) ** 2)
-    f = ro.SumFunction(12, [part])
-    assert (f.marginal_bounds(0) >= 144).all()
-    assert f.overestimator(0, np.ones(12)).at(np.ones(12)) == 144
-    assert f.overestimator(0, np.zeros(12)).at(np.zeros(12)) == 0
+    part = ro.Part(range(14), lambda membership: membership.sum(axis=1).astype(float) ** 2)
+    f = ro.SumFunction(14, [part])
+    assert (f.marginal_bounds(0) >= 196).all()
+    assert f.overestimator(0, np.ones(14)).at(np.ones(14)) == 196
+    assert f.overestimator(0, np.zeros(14)).at(np.zeros(14)) == 0
 
 
 def test_extensions_and_batches_equal_single_values():

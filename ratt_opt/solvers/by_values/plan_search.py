@@ -17,7 +17,7 @@ from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE, PlanAttacks
 from ratt_opt.solvers.by_values.plan_bounds import guarantee_bound, pooling_bound
 from ratt_opt.solvers.by_values.plan_tree import PlanTree
 from ratt_opt.solvers.by_values.reliance import refuse_along, relied_on
-from ratt_opt.solvers.by_values.row_search import RowSearch, parts_of
+from ratt_opt.solvers.by_values.row_tree import RowTree, down_to_multiple, parts_of
 from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
 from ratt_opt.solvers.result import MaxMinResult
 
@@ -44,12 +44,14 @@ class WalkParams:
     """Effort of the walks from the best plan: more kicks find better plans, rows find better upper ends.
 
     ``share`` : of the seconds and values left, for a walk; ``rows_share`` : before it, for upper ends by rows
+    ``first_share`` : of these for the first of them, before other searches: ends soon known against better ones
     ``patience`` : kicks in vain after which the first walk ends; later ones have more
     ``most_robots`` : robots that a kick moves, from 1 to this
     """
 
     share: float = 0.5
     rows_share: float = 0.5
+    first_share: float = 0.1
     patience: int = 30
     most_robots: int = 3
 
@@ -68,6 +70,7 @@ class PlanSearch:
         self._climbing = Climbing(problem, self._attacks, budget)
         self._rng = np.random.default_rng(seed)
         self.kicks = 0
+        self._rows: RowTree | None = None
         self.plans: list[IntArray] = []
         """RATT's, the greedy and the myopic plan, as far as they differ."""
         self.ratts: Plan | None = None
@@ -103,32 +106,41 @@ class PlanSearch:
 
     def run(self, gap: float) -> Stop:
         """Climb from the first plans, bound all plans, walk on from the best one, then divide all plans."""
-        attacks = self._attacks
-        self._bound(pooling_bound(self._given, attacks, self._budget))
         if self._ratts is not None and not self._budget.is_over:
-            self._bound(guarantee_bound(attacks.problem, self._ratts.upper))
+            self._bound(guarantee_bound(self._attacks.problem, self._ratts.upper))
         for plan in sorted(self.plans, key=self._climbing.value, reverse=True):
             if self._climbed(plan, gap):
                 return Stop.CLOSED
         return Stop.CLOSED if self._bounded_by_rows(gap) else self._divided(gap)
 
+    def bound_first(self) -> None:
+        """Bound all plans by attacks on robots that hold all their elements, and by the first rows of parts."""
+        self._bound(pooling_bound(self._given, self._attacks, self._budget))
+        self._bound_by_rows(self._params.first_share)
+
     def _bounded_by_rows(self, gap: float) -> bool:
         """Lower the upper end by rows of parts, and climb from a plan near the fractional one; whether that closes."""
-        f, part = unmetered(self._given.objective), self._budget.part(self._params.rows_share)
+        self._bound_by_rows(self._params.rows_share)
+        return self._is_closed(gap) or (self._rows is not None and self._climbed(self._rows.rounded(), gap))
+
+    def _bound_by_rows(self, share: float) -> None:
+        """Bound the root of the tree by rows, within a share of what is left."""
+        f, part = unmetered(self._given.objective), self._budget.part(share)
         asked = metered_problem(self._attacks.problem, part).objective
-        parts = parts_of(f, asked)
+        parts = parts_of(f, self._attacks.problem.objective)
         if parts is None or part.is_over:
-            return self._is_closed(gap)
+            return
         try:
-            rows = RowSearch(self._given, parts, self._attacks, asked.singletons() if f.is_submodular else None)
-            try:
-                rows.run(part)
-            finally:
-                self._bound(rows.upper if rows.relies_on_caps else rows.bound)
+            if self._rows is None:
+                single = asked.singletons() if f.is_submodular else None
+                self._rows = RowTree(self._given, parts, self._attacks, single, (self.upper, part))
+            if self._rows.is_at_root:
+                self._rows.divide(part)
         except OutOfBudget:
             self._budget.check()
-            return self._is_closed(gap)
-        return self._is_closed(gap) or self._climbed(rows.rounded(), gap)
+        finally:
+            if self._rows is not None:
+                self._bound(self._rows.upper if self._rows.relies_on_caps else self._rows.bound)
 
     def _climbed(self, plan: IntArray, gap: float) -> bool:
         """Climb from one plan until attacks teach nothing; whether that closes the bracket."""
@@ -173,7 +185,8 @@ class PlanSearch:
 
         A turn's length is counted in values and nodes, so that the result is the same on every run.
         """
-        budget, tree = self._budget, PlanTree(self._given, self._attacks, self._climbing.worth, self.upper)
+        budget = self._budget
+        tree = self._rows or PlanTree(self._given, self._attacks, self._climbing.worth, self.upper)
         is_limited, patience = self._is_limited, self._params.patience
         nodes = NODES if is_limited or self._given.n_robots <= SOON_VALUED else 0
         while True:
@@ -193,6 +206,7 @@ class PlanSearch:
 
     def _bound(self, upper: float) -> None:
         attacks, f = self._attacks, unmetered(self._given.objective)
+        upper = down_to_multiple(upper, f.spacing)
         if f.is_submodular and upper < attacks.lower - f.least_improvement(attacks.lower, terms=4):
             refuse_along(f, np.asarray(attacks.elements))
         self.upper = max(min(self.upper, upper), attacks.lower)

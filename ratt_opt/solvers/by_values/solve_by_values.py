@@ -1,9 +1,9 @@
 """Plans for any set function, known by its values alone: a bracket of any size, within any number of values.
 
 First RATT's, the greedy and the myopic plan, each attacked and improved by exchanges of one element; no search returns
-less. Small problems are then enumerated (``exhaustive.py``). Beyond: bounds by rows (``rows.py``) if the function is
-submodular or a sum. Then walks from the best plan and branch and bound over all other plans (``plan_tree.py``) take
-turns. The latter ends with exact attacks on those that nothing else rules out.
+less. Small problems are then enumerated (``exhaustive.py``). Beyond: bounds by rows (``row_tree.py``) if the function
+is submodular or a sum. Then walks from the best plan and branch and bound over all other plans take turns, by these
+rows or by monotonicity (``plan_tree.py``). It ends with exact attacks on plans that nothing else rules out.
 """
 
 from __future__ import annotations
@@ -57,6 +57,7 @@ def solve_by_values(
         if found is not None and found.stop in DONE:
             return found
         search.learn(found)
+        search.bound_first()
         if otherwise is not None:
             search.learn(otherwise())
             budget.check()

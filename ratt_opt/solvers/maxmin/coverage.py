@@ -28,10 +28,6 @@ if TYPE_CHECKING:
 __all__ = ["CoverageParams", "CoverageTrace"]
 
 
-MOST_WHOLE = 2**40
-"""Whole numbers up to this are divided and multiplied without rounding to another one."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoverageParams:
     """Numbers of the trace.
@@ -56,8 +52,8 @@ class CoverageTrace:
     factor: float
     rounding: float
     """Factor by which the computed weights may be off."""
-    unit: float | None
-    """All values are multiples of it, if it is known."""
+    unit: float
+    """All values are multiples of it, unless it is 0."""
 
     @classmethod
     def of(cls, problem: Problem, params: CoverageParams | None = None) -> Self | None:
@@ -72,9 +68,7 @@ class CoverageTrace:
         trace = TraceObjective(np.ones((len(weights), 1, 1)), information, weights)
         rounding = float(1 + 16 * len(weights) * np.finfo(np.float64).eps)
         factor = (1 + 1 / params.information) * rounding
-        whole = f.has_exact_values and weights.max() < MOST_WHOLE
-        unit = float(np.gcd.reduce(weights.astype(np.int64))) if whole else None
-        return cls(problem=replace(problem, objective=trace), factor=factor, rounding=rounding, unit=unit)
+        return cls(problem=replace(problem, objective=trace), factor=factor, rounding=rounding, unit=f.spacing)
 
     def gap(self, gap: float) -> float:
         """Return the gap to search the trace to, for a gap of the sum: no less than what lies between the two."""
@@ -83,7 +77,7 @@ class CoverageTrace:
     def carried_over(self, found: MaxMinResult) -> MaxMinResult:
         """The result for the sum of best elements; it has no proof in the form of certificates."""
         lower, upper = found.lower / self.rounding, found.upper * self.factor
-        if self.unit is not None:
+        if self.unit > 0:
             lower, upper = (self.unit * float(end) for end in (np.ceil(lower / self.unit), np.floor(upper / self.unit)))
         return replace(
             found, lower=lower, upper=upper, proof=None, worst_case=None, posterior_gap=None, unattacked=None

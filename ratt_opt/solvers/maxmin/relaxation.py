@@ -66,13 +66,23 @@ class NodeProgram:
 
     One program for the whole search: nodes differ in column bounds and in the cuts they use, so each
     solve starts from the last basis. Only the multipliers are used; every bound is derived from them anew.
+
+    ``choices`` : columns of each robot, or of each class of robots, of ``sizes`` robots each
     """
 
-    def __init__(self, n_elements: int, choices: Choices, limit: ChoiceLimit | None = None) -> None:
+    def __init__(
+        self,
+        n_elements: int,
+        choices: Choices,
+        limit: ChoiceLimit | None = None,
+        sizes: FloatArray | None = None,
+    ) -> None:
         self._n, self._first_cut = n_elements, len(choices) + (limit is not None)
-        zeros, ones = np.zeros(n_elements), np.ones(n_elements)
-        owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], 1.0, 1.0)
-        cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(ones, np.inf)
+        sizes = np.ones(len(choices)) if sizes is None else sizes
+        zeros, most = np.zeros(n_elements), np.full(n_elements, float(sizes.max()))
+        owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], sizes, sizes)
+        cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(most, np.inf)
+        self._most = most
         self._program = LinearProgram(cost, lower, upper, rows=owners, maximise=True, solver="simplex")
         if limit is not None:
             busy = np.setdiff1d(np.concatenate(choices), limit.idle).tolist()
@@ -128,6 +138,10 @@ class NodeProgram:
             self._program.bound_column(e, 0.0, 1.0 if allowed[e] else 0.0)
         self._allowed = allowed
 
+    def within(self, lower: FloatArray, upper: FloatArray) -> None:
+        """Set at least and at most how many robots choose each column."""
+        self._program.bound_columns(lower, upper)
+
     def solve(self, seconds: float = np.inf) -> RelaxedPlan | None:
         """Solve within that many seconds and return what HiGHS claims, or ``None`` when it claims no optimum."""
         self._add_fresh()
@@ -138,7 +152,7 @@ class NodeProgram:
         for cut, dual in zip(self.in_use, duals, strict=True):
             self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
         columns = claim.x[: self._n]
-        selection = np.where(columns > ROUNDING, np.minimum(columns, 1.0), 0.0)
+        selection = np.where(columns > ROUNDING, np.minimum(columns, self._most), 0.0)
         cuts, level = np.array(self.in_use, dtype=np.int64), float(claim.x[self._n])
         return RelaxedPlan(selection=selection, cuts=cuts, duals=duals, level=level)
 

@@ -9,7 +9,7 @@ import pytest
 import ratt_opt as ro
 from tests.attack.engine import NO_TABLES
 from tests.oracles import brute_force_optimum, brute_force_worst_case
-from tests.solvers.maxmin.engine import NO_PLANS_LISTED
+from tests.solvers.maxmin.engine import NO_PLANS_LISTED, TRACE_INTERRUPTED
 from tests.strategies import Submodular
 from tests.ways import go
 
@@ -89,6 +89,26 @@ def nothing_is_enumerated(monkeypatch):
 @pytest.mark.usefixtures("nothing_is_enumerated")
 def test_both_ends_hold_against_brute_force():
     assert check(range(40)) > 20
+
+
+@pytest.mark.usefixtures("nothing_is_enumerated")
+def test_rows_close_sums_of_ones_own():
+    """Seven robots, two of them lost: rows of parts and the tree below them end, whatever the parts are."""
+    rng = np.random.default_rng(7)
+    utility = rng.random((21, 8)) * (rng.random((21, 8)) < 0.25)
+    for f in (ro.FacilityLocation(utility), OwnSum(utility > 0)):
+        one = ro.Problem(f, np.repeat(np.arange(7), 3), None, 2, 0)
+        found = ro.solve_maxmin(one, max_nodes=400)
+        assert found.stop is ro.Stop.CLOSED
+        assert found.lower == worst(one, found.elements)
+
+
+def test_an_upper_end_is_known_before_the_search_of_the_trace_begins(monkeypatch):
+    go(monkeypatch, TRACE_INTERRUPTED)
+    covers = np.random.default_rng(1).random((105, 150)) < 0.07
+    found = ro.solve_maxmin(ro.Problem(ro.Coverage(covers, np.ones(150)), np.repeat(np.arange(15), 7), None, 6, 0))
+    assert found.stop is ro.Stop.INTERRUPTED
+    assert found.upper == int(found.upper) <= 1.3 * found.lower
 
 
 @pytest.mark.slow

@@ -38,6 +38,7 @@ __all__ = [
     "NO_GROUPS",
     "NO_PLANS_LISTED",
     "SMALL_TREES",
+    "TRACE_INTERRUPTED",
     "TREES_SOON",
     "UNLISTED",
     "by_marginals",
@@ -51,6 +52,14 @@ __all__ = [
 
 NO_PLANS_LISTED: Way = {(exhaustive, "LARGEST_SEARCH"): 0, (solve, "FEW_PLANS"): 0}
 """Plans are searched, however few they are."""
+
+
+def _interrupted(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+TRACE_INTERRUPTED: Way = {(solve, "_solve_as_trace"): _interrupted}
+"""The search of coverage as a trace is interrupted as it begins."""
 LAZY: Way = {(ratt, "PLAIN_WORK"): -1}
 """Greedy choices are bounded by earlier marginal gains, however few they are."""
 UNLISTED: Way = {(outcome_pool, "LISTED_ROBOTS"): 0}

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.budget import Budget
-    from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.rows.pool import InequalityPool
 
 __all__ = ["exchanged"]
@@ -46,20 +46,17 @@ class _Rest:
 
 
 def exchanged(
-    outcomes: OutcomePool,
+    problem: Problem,
     inequalities: InequalityPool,
     by_robot: FloatArray,
-    values: FloatArray,
+    starts: list[Attack],
     until: tuple[float, Budget],
 ) -> Iterator[Attack]:
-    """Attacks under which rows leave less than a level, one from each of the lowest known outcomes and a greedy one.
+    """Attacks under which rows leave less than a level, one from each of some known ones and a greedy one.
 
-    ``values`` : (G,) of the known groups' rows; ``until`` : the level, and the budget
+    ``by_robot`` : (N, K) what each robot adds to each inequality; ``until`` : the level, and the budget
     """
-    problem, params = outcomes.problem, inequalities.params
     level, budget = until
-    teams = outcomes.outcome_values(values)
-    starts = [outcomes.attack(o) for o in np.argsort(teams, kind="stable")[: params.starts].tolist()]
     free = np.isin(np.arange(problem.n_robots), list(problem.protected_robots), invert=True)
     seen = set()
     for start in [*starts, Attack()]:
@@ -69,7 +66,7 @@ def exchanged(
         while not budget.is_over and (~sensing).sum() < min(problem.alpha_s, free.sum()):
             sensing = _best(rest, sensing, free & sensing)[0]
         worth = float(rest.worth(sensing[None])[0])
-        for _ in range(params.steps if not sensing.all() else 0):
+        for _ in range(inequalities.params.steps if not sensing.all() else 0):
             if budget.is_over:
                 return
             more, _ = _best(rest, sensing, free & sensing)

@@ -8,13 +8,13 @@ import numpy as np
 
 from ratt_opt.bounds.cuts import ROUNDING
 from ratt_opt.solvers.maxmin.proof import TangentCut
-from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities, first_of_each_class
+from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.elements import Task
     from ratt_opt.solvers.maxmin.rows.inequalities import Inequalities, TargetInequality
     from ratt_opt.solvers.maxmin.rows.params import RowParams
@@ -46,31 +46,44 @@ class Row:
 
 
 class InequalityPool:
-    """Inequalities that serve every outcome: at least one of each target."""
+    """Inequalities that serve every outcome: at least one of each target.
 
-    def __init__(self, task: Task, params: RowParams) -> None:
-        self.task, self.params = task, params
-        objective = task.objective
-        self.first = first_of_each_class(task)
+    Parameters
+    ----------
+    robot : (E,) the robot of each element
+    lasting : inequalities that are never forgotten, at least one of each of the ``n_targets`` targets
+    """
+
+    def __init__(self, robot: IntArray, n_targets: int, lasting: Sequence[Inequalities], params: RowParams) -> None:
+        self.params = params
+        self._robot, self._n_targets = robot, n_targets
         self._targets, self._constants = np.zeros(0, dtype=np.int64), np.zeros(0)
-        self._scores = np.zeros((1, objective.n))
+        self._scores = np.zeros((1, len(robot)))
         self._origins: list[TargetInequality] = []
         self._used = np.zeros(0)
         self._round = 0.0
-        everything = objective.posterior_mixture(np.ones(objective.n))
-        self.add(
-            [*base_set_inequalities(task, params), tangents(objective, everything, np.arange(objective.n_targets))]
-        )
+        self.add(lasting)
         self._lasting = len(self)
+
+    @classmethod
+    def of(cls, task: Task, params: RowParams) -> InequalityPool:
+        """The pool of a criterion: base sets, and the tangents at all elements of all robots."""
+        objective = task.objective
+        everything = objective.posterior_mixture(np.ones(objective.n))
+        lasting = [
+            *base_set_inequalities(task, params),
+            tangents(objective, everything, np.arange(objective.n_targets)),
+        ]
+        return cls(task.problem.robot, objective.n_targets, lasting, params)
 
     def __len__(self) -> int:
         return len(self._origins)
 
     def by_robot(self, selection: FloatArray) -> FloatArray:
         """(N, K) what each robot's relaxed choice (E,) adds to each inequality, sorted by target."""
-        problem, chosen = self.task.problem, np.flatnonzero(selection)
-        mixed = np.zeros((len(chosen), problem.n_robots))
-        mixed[np.arange(len(chosen)), problem.robot[chosen]] = selection[chosen]
+        chosen = np.flatnonzero(selection)
+        mixed = np.zeros((len(chosen), int(self._robot.max()) + 1))
+        mixed[np.arange(len(chosen)), self._robot[chosen]] = selection[chosen]
         added = self._scores[: len(self), chosen] @ mixed
         return np.ascontiguousarray(added[self._order].T)
 
@@ -101,24 +114,29 @@ class InequalityPool:
 
     def row(self, group: tuple[int, ...], selection: FloatArray) -> Row:
         """The lowest row of a group at a relaxed choice (E,)."""
-        inside = self._members(group)[self.task.problem.robot]
-        chosen = np.flatnonzero((selection > 0) & inside)
+        inside = np.isin(self._robot, group)
+        lowest = self._lowest(selection * inside)
+        scores, constants = self._scores[lowest].sum(axis=0) * inside, self._constants[lowest]
+        constant = _rounded_up(constants, scores, len(group))
+        return Row(group, constant, scores, tuple(self._origins[k] for k in lowest.tolist()))
+
+    def combined(self, left: FloatArray, selection: FloatArray) -> tuple[float, FloatArray]:
+        """Constant and scores (E,) of the lowest row at a relaxed choice (E,), of robots left in part (N,)."""
+        inside = left[self._robot]
+        lowest = self._lowest(selection * inside)
+        scores, constants = self._scores[lowest].sum(axis=0) * inside, self._constants[lowest]
+        return _rounded_up(constants, scores, len(left)), scores
+
+    def _lowest(self, selection: FloatArray) -> IntArray:
+        """(M,) the lowest inequality of each target at a relaxed choice (E,)."""
+        chosen = np.flatnonzero(selection)
         values = (self._scores[: len(self), chosen] @ selection[chosen] + self._constants)[self._order]
         least = np.minimum.reduceat(values, self._starts)
         tight = np.flatnonzero(values == least[self._targets[self._order]])
         lowest = self._order[tight[np.searchsorted(tight, self._starts)]]
         self._round += 1
         self._used[lowest] = self._round
-        scores, constants = self._scores[lowest].sum(axis=0) * inside, self._constants[lowest]
-        size = float(np.abs(constants).sum() + np.abs(scores).max(initial=0.0) * len(group))
-        constant = float(constants.sum()) + ROUNDING * size
-        return Row(group, constant, scores, tuple(self._origins[k] for k in lowest.tolist()))
-
-    def _members(self, group: tuple[int, ...]) -> BoolArray:
-        """(N,) which robots are in a group."""
-        inside = np.zeros(self.task.problem.n_robots, dtype=np.bool_)
-        inside[list(group)] = True
-        return inside
+        return lowest
 
     def _forget(self) -> None:
         """Drop half of the inequalities that were learnt, those that were not lowest for longest."""
@@ -138,5 +156,11 @@ class InequalityPool:
 
     def _sort(self) -> None:
         self._order = np.argsort(self._targets, kind="stable")
-        self._starts = np.searchsorted(self._targets[self._order], np.arange(self.task.objective.n_targets))
+        self._starts = np.searchsorted(self._targets[self._order], np.arange(self._n_targets))
         self._sorted_constants: IntArray | FloatArray = self._constants[self._order]
+
+
+def _rounded_up(constants: FloatArray, scores: FloatArray, robots: int) -> float:
+    """The sum of constants, with what rounding may take off a row for that many robots."""
+    size = float(np.abs(constants).sum() + np.abs(scores).max(initial=0.0) * robots)
+    return float(constants.sum()) + ROUNDING * size

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.rows.base_sets import semidefinite
+from ratt_opt.solvers.maxmin.rows.base_sets import first_of_each_class, semidefinite
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
 from ratt_opt.solvers.maxmin.rows.hulls import as_inequalities, hulls_of
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
@@ -43,12 +43,13 @@ class RowSeparation:
 
     def __init__(self, task: Task, outcomes: OutcomePool, budget: Budget, params: RowParams) -> None:
         self.task, self.outcomes, self.budget, self.params = task, outcomes, budget, params
-        self.inequalities = InequalityPool(task, params)
+        self.inequalities = InequalityPool.of(task, params)
+        self._first = first_of_each_class(task)
         everything = task.objective.posterior_mixture(np.ones(task.objective.n))
         self._most = task.objective.target_values(everything)
         """(M,) what all elements together are worth for each target."""
         self._mean = np.zeros(task.objective.n)
-        self.hulls = hulls_of(task, params, semidefinite(task.objective.information), self.inequalities.first)
+        self.hulls = hulls_of(task, params, semidefinite(task.objective.information), self._first)
 
     @staticmethod
     def fits(task: Task, params: RowParams | None = None) -> bool:
@@ -145,13 +146,16 @@ class RowSeparation:
         """(E,) scores of a hull's elements (k,), and of those that are equal to them."""
         every = np.zeros(self.task.objective.n)
         every[hull.elements] = scores
-        return np.asarray(every[self.inequalities.first])
+        return np.asarray(every[self._first])
 
     def learn(self, relaxed: RelaxedGroups, level: float) -> bool:
         """Exchange blinded robots of known outcomes for some that leave rows less than ``level``; whether one does."""
         known = len(self.outcomes)
         if not self.outcomes.complete:
             by_robot = self.inequalities.by_robot(relaxed.selection)
-            for attack in exchanged(self.outcomes, self.inequalities, by_robot, relaxed.values, (level, self.budget)):
+            teams = self.outcomes.outcome_values(relaxed.values)
+            lowest = np.argsort(teams, kind="stable")[: self.params.starts].tolist()
+            starts = [self.outcomes.attack(o) for o in lowest]
+            for attack in exchanged(self.outcomes.problem, self.inequalities, by_robot, starts, (level, self.budget)):
                 self.outcomes.add(attack)
         return len(self.outcomes) > known

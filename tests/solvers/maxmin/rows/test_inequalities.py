@@ -83,7 +83,7 @@ def test_rows_bound_groups_and_survive_forgetting(seed: int) -> None:
     rng = np.random.default_rng([66, seed])
     task = drawn_task(rng)
     objective, robots = task.objective, task.problem.n_robots
-    pool = InequalityPool(task, RowParams(most=40))
+    pool = InequalityPool.of(task, RowParams(most=40))
     for _ in range(12):
         share = np.where(rng.random(ELEMENTS) < 0.5, rng.random(ELEMENTS), 0.0)
         pool.add([tangents(objective, objective.posterior_mixture(share), np.arange(objective.n_targets))])
