@@ -33,6 +33,8 @@ from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.undominated import UndominatedProblem, dominators, undominated
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
@@ -106,6 +108,7 @@ def refined(
     seed: int = 0,
     max_kicks: int | None = None,
     budget: Budget | None = None,
+    on_improvement: Callable[[IntArray], object] | None = None,
 ) -> RefinedPlan:
     """Improve RATT's plan against the attacks that hurt it; never return a plan that is worse.
 
@@ -122,13 +125,14 @@ def refined(
     seed : integer >= 0, of the kicks
     max_kicks : with it, and no limit of time, the plan is the same on every run
     budget : an outer search's budget: its seconds and interrupts count too
+    on_improvement : called with RATT's plan (N,), and then with each one that the attacks known rate above all before
 
     Raises
     ------
     InputError : a limit is negative, or ``start`` is no plan.
     """
     if not isinstance(check_problem(problem, knows_at_most=True).objective, InformationObjective):
-        return _refined_by_values(problem, Budget.inside(budget, time_limit), start, seed, max_kicks)
+        return _refined_by_values(problem, Budget.inside(budget, time_limit), start, (seed, max_kicks), on_improvement)
     problem = with_unit_prior(problem)
     kicks_left = None if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
@@ -136,10 +140,14 @@ def refined(
     own = Budget.inside(budget, time_limit)
     first = ratt(problem, alpha_cs=alpha_cs_in_share(problem, own), budget=own)
     few = undominated(problem)
+    if on_improvement is not None:
+        on_improvement(first.elements)
     among = dominators(problem, few.kept)
     incumbent = Incumbent(few, OutcomePool(few), among[first.elements], own)
     kicks, stop = 0, Stop.HEURISTIC
     try:
+        if on_improvement is not None:
+            incumbent.on_improvement = lambda plan: on_improvement(few.kept[plan])
         incumbent.pool.list_all()
         others = [planner(problem, budget=own).elements for planner in (greedy, myopic)]
         _meet(incumbent, [among[plan] for plan in (first.elements, *given, *others)])
@@ -176,12 +184,18 @@ def _can_be_worse(incumbent: Incumbent, starts: list[IntArray]) -> bool:
 
 
 def _refined_by_values(
-    problem: Problem, budget: Budget, start: ArrayLike | Plan | None, seed: int, max_kicks: int | None
+    problem: Problem,
+    budget: Budget,
+    start: ArrayLike | Plan | None,
+    kicks: tuple[int, int | None],
+    on_improvement: Callable[[IntArray], object] | None,
 ) -> RefinedPlan:
     """Improve RATT's, the greedy and the myopic plan of any non-decreasing function, known by its values."""
+    seed, max_kicks = kicks
     most = np.inf if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
-    search = PlanSearch(problem, budget, seed=check_integer("seed", seed, low=0))
+    seed = check_integer("seed", seed, low=0)
+    search = PlanSearch(problem, budget, seed=seed, on_improvement=on_improvement)
     is_patient = max_kicks is None and np.isinf(budget.seconds_left)
     stop = Stop.HEURISTIC
     try:

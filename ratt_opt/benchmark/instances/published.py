@@ -18,7 +18,7 @@ def library_folder(library: str | Path) -> Path:
 
     Raises
     ------
-    InputError : it is neither, or fetching needs the extra ``benchmark``.
+    InputError : it is neither, fetching needs the extra ``benchmark``, nobody answers, or the archive is another one.
     """
     folder = Path(library)
     if (folder / INDEX).is_file():
@@ -31,5 +31,8 @@ def library_folder(library: str | Path) -> Path:
     except ImportError:
         raise InputError("library", "needs pooch: install the extra 'benchmark'", "no module 'pooch'") from None
     address, digest = PUBLISHED[str(library)]
-    files = pooch.retrieve(address, known_hash=digest, processor=pooch.Untar())
+    try:
+        files = pooch.retrieve(address, known_hash=digest, processor=pooch.Untar(), progressbar=False)
+    except (OSError, ValueError) as error:  # nobody answers, or the archive has another hash
+        raise InputError("library", f"must be fetched from {address}", str(error).splitlines()[0]) from None
     return next(Path(file).parent for file in files if Path(file).name == INDEX)

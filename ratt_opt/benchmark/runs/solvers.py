@@ -140,7 +140,7 @@ def _attack_by(instance: BenchmarkInstance, attack: Callable[..., Any], _seconds
 
 def _refined(instance: BenchmarkInstance, _out: Path, seconds: float) -> None:
     _need(instance, "plan")
-    found = refined(instance.team, time_limit=0.8 * seconds)
+    found = refined(instance.team, time_limit=0.8 * seconds, on_improvement=lambda plan: _say(elements=plan.tolist()))
     _say(elements=found.elements.tolist(), lower=found.lower)
 
 

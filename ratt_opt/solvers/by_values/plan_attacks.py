@@ -11,6 +11,8 @@ from ratt_opt.attack.task import AttackMemory, AttackOptions, metered_problem
 from ratt_opt.budget import OutOfBudget, Stop
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
@@ -36,6 +38,8 @@ class PlanAttacks:
         self.problem = metered_problem(problem, budget)
         self.elements, self.lower = elements, lower
         self.worst_case: AttackResult | None = None
+        self.on_improvement: Callable[[IntArray], object] | None = None
+        """Called with each plan that is kept."""
         self.known: dict[Attack, list[frozenset[int]]] = {}
         self._first: bytes | None = None
         self._begun: dict[bytes, AttackMemory] = {}
@@ -77,6 +81,8 @@ class PlanAttacks:
         self.known.setdefault(result.attack, self._given.groups_left(result.attack))
         if self.worst_case is None or result.lower > self.lower:
             self.elements, self.lower, self.worst_case = elements.copy(), max(result.lower, self.lower), result
+            if self.on_improvement is not None:
+                self.on_improvement(self.elements)
         if result.stop is Stop.INTERRUPTED:
             raise OutOfBudget(result.stop)
         return result

@@ -22,6 +22,8 @@ from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
 from ratt_opt.solvers.result import MaxMinResult
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.problem import Plan, Problem
@@ -59,7 +61,15 @@ class WalkParams:
 class PlanSearch:
     """The bracket, valid at any moment."""
 
-    def __init__(self, problem: Problem, budget: Budget, params: WalkParams | None = None, *, seed: int = 0) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        budget: Budget,
+        params: WalkParams | None = None,
+        *,
+        seed: int = 0,
+        on_improvement: Callable[[IntArray], object] | None = None,
+    ) -> None:
         self._given, self._budget, self._params = problem, budget, params or WalkParams()
         elements = np.array([choice[0] for choice in problem.choices]) if problem.at_most is None else problem.idle
         empty, full = np.zeros((2, problem.objective.n), dtype=np.bool_)
@@ -67,6 +77,7 @@ class PlanSearch:
         ends = checked_values(unmetered(problem.objective), np.array([empty, full]))  # whatever the limits
         lower, self.upper = float(ends[0]), float(ends[1])
         self._attacks = PlanAttacks(problem, budget, elements, lower)
+        self._attacks.on_improvement = on_improvement
         self._climbing = Climbing(problem, self._attacks, budget)
         self._rng = np.random.default_rng(seed)
         self.kicks = 0

@@ -13,7 +13,7 @@ from ratt_opt.solvers.maxmin.candidates import Candidates, climb
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.task import AttackResult
@@ -105,6 +105,8 @@ class Incumbent:
         self.candidates = Candidates(pool, first)
         self.adversary = Adversary(problem, pool, budget)
         self.proved = ProvedPlan(self.adversary, first)
+        self.on_improvement: Callable[[IntArray], object] | None = None
+        """Called with each plan that becomes the best."""
         self._started: set[bytes] = set()
         self._rivals: set[bytes] = set()
 
@@ -152,7 +154,10 @@ class Incumbent:
             pass  # what was learnt may be weaker than what there is to learn
         if self.candidates.is_better(plan) and self.adversary.is_exact_cheaply:
             self.proved.attack(plan, self.budget.part())
-        return self.candidates.add(plan)
+        is_best = self.candidates.add(plan)
+        if is_best and self.on_improvement is not None:
+            self.on_improvement(plan)
+        return is_best
 
     def improve(self, plan: IntArray) -> None:
         """Local search from a plan, judged by the known outcomes.
