@@ -1,28 +1,29 @@
-"""Costs of planning by messages as powers of the team's size: ``python -m analysis.decentralised.costs --seeds 1``.
+"""Costs of planning by messages as powers of robots, diameter and budget: ``python -m analysis.decentralised.costs``.
 
-Five families of networks; a least-squares line through the logarithms of messages, bytes and decision time, with
-its 95 % interval (Student's t).
+Five families of networks up to 200 robots; least squares through the logarithms of messages, bytes and decision time.
+Intervals are 95 % (Student's t).
 """
 
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
-from scipy.stats import linregress, t
+from scipy.stats import t
 
 from ratt_opt.decentralised.plan import decentralised_ratt
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from ratt_opt.decentralised.plan import DecentralisedPlan
+    from ratt_opt._validation import FloatArray
 
-__all__ = ["FAMILIES", "exponent", "plan_of", "table"]
+__all__ = ["FAMILIES", "Run", "powers", "run_of", "table"]
 
 FAMILIES: dict[str, Callable[[int, int], nx.Graph]] = {
     "path": lambda n, _: nx.path_graph(n),
@@ -31,46 +32,99 @@ FAMILIES: dict[str, Callable[[int, int], nx.Graph]] = {
     "degree 8": lambda n, seed: nx.random_regular_graph(8, n, seed=seed),
     "complete": lambda n, _: nx.complete_graph(n),
 }
-SIZES = (12, 25, 50, 100)
-TARGETS, CONTROLS, BLINDED = 4, 3, 2
-COSTS = ("messages", "bytes", "decision_time")
+TREES = ("path", "random tree")
+SIZES, SHARES = (25, 50, 100, 200), (0.04, 0.2, 0.6)
+"""Robots, and the budget as a share of them: robots that may be blinded; no link can be cut."""
+TARGETS, CONTROLS = 4, 3
+COSTS = ("messages", "bytes", "seconds")
+CAUSES = ("robots", "diameter", "alpha")
 
 
-def plan_of(family: str, n: int, seed: int) -> DecentralisedPlan:
-    """Plan of one team of random rank-one sensors, two of which may be blinded; no link can be cut."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """Costs of one plan; ``alpha`` : number of baits."""
+
+    family: str
+    robots: int
+    diameter: int
+    alpha: int
+    messages: int
+    bytes: int
+    seconds: float
+
+
+def run_of(family: str, n: int, share: float, seed: int) -> Run:
+    """Plan one team of random rank-one sensors, a share of which may be blinded."""
     rng = np.random.default_rng(seed)
     rows = rng.normal(size=(n * CONTROLS, TARGETS, 2, 1))
     f = TraceObjective(np.tile(np.eye(2), (TARGETS, 1, 1)), rows @ rows.swapaxes(-1, -2))
-    problem = Problem(f, np.repeat(np.arange(n), CONTROLS), FAMILIES[family](n, seed), BLINDED, 0)
-    return decentralised_ratt(problem)
+    graph = FAMILIES[family](n, seed)
+    alpha = max(1, round(share * n))
+    plan = decentralised_ratt(Problem(f, np.repeat(np.arange(n), CONTROLS), graph, alpha, 0))
+    return Run(
+        family=family,
+        robots=n,
+        diameter=nx.diameter(graph),
+        alpha=alpha,
+        messages=plan.messages,
+        bytes=plan.bytes,
+        seconds=plan.decision_time,
+    )
 
 
-def exponent(sizes: list[int], costs: list[float]) -> tuple[float, float]:
-    """Power of the size, and half the width of its 95 % interval."""
-    fit = linregress(np.log(sizes), np.log(costs))
-    return float(fit.slope), float(fit.stderr * t.ppf(0.975, len(sizes) - 2))
+def powers(runs: Sequence[Run], cost: str, causes: Sequence[str]) -> list[tuple[float, float]]:
+    """Power of each cause (``robots``, ``diameter``, ``alpha``), and half the width of its 95 % interval."""
+    x = np.log([[getattr(run, cause) for cause in causes] for run in runs])
+    design: FloatArray = np.column_stack([np.ones(len(runs)), x])
+    y = np.log([getattr(run, cost) for run in runs])
+    fit, _, _, _ = np.linalg.lstsq(design, y, rcond=None)
+    free = len(runs) - design.shape[1]
+    variance = float(((y - design @ fit) ** 2).sum()) / free * np.linalg.inv(design.T @ design)
+    half = t.ppf(0.975, free) * np.sqrt(np.diag(variance))
+    return [(float(power), float(width)) for power, width in zip(fit[1:], half[1:], strict=True)]
+
+
+def _shown(fits: Sequence[tuple[float, float]]) -> str:
+    return ", ".join(f"{power:.2f} ± {half:.2f}" for power, half in fits)
 
 
 def table(seeds: int) -> list[str]:
-    """Rows of a Markdown table, a family a row."""
+    """Rows of two Markdown tables: powers of robots and alpha by family, and of all three causes over all families."""
+    runs = [
+        run_of(family, n, share, seed)
+        for family in FAMILIES
+        for n in SIZES
+        for share in SHARES
+        for seed in range(seeds)
+    ]
     lines = [
-        "| network | messages | bytes | decision time | 100 robots: messages, megabytes, seconds |",
-        "| --- | --- | --- | --- | --- |",
+        "| network | messages: N, alpha | bytes: N, alpha | seconds: N, alpha | messages / (N alpha + N^2), at most "
+        "| largest team, fewest baits |",
+        "| --- | --- | --- | --- | --- | --- |",
     ]
     for family in FAMILIES:
-        runs = [(n, plan_of(family, n, seed)) for n in SIZES for seed in range(seeds)]
-        sizes = [n for n, _ in runs]
-        fits = [exponent(sizes, [float(getattr(plan, cost)) for _, plan in runs]) for cost in COSTS]
-        powers = " | ".join(f"{power:.2f} ± {half:.2f}" for power, half in fits)
-        last = [np.mean([getattr(plan, cost) for n, plan in runs if n == SIZES[-1]]) for cost in COSTS]
-        lines.append(f"| {family} | {powers} | {last[0]:,.0f}, {last[1] / 1e6:.1f}, {last[2]:.1f} |")
+        own = [run for run in runs if run.family == family]
+        fits = " | ".join(_shown(powers(own, cost, ("robots", "alpha"))) for cost in COSTS)
+        ratio = max(run.messages / (run.robots * run.alpha + run.robots**2) for run in own)
+        last = max(own, key=lambda run: (run.robots, -run.alpha))
+        told = f"{last.messages:,} messages, {last.bytes / 1e6:.1f} MB, {last.seconds:.1f} s"
+        lines.append(f"| {family} | {fits} | {ratio:.2f} | {told} |")
+    sparse = [run for run in runs if run.family != "complete"]
+    lines += ["", "| cost | N | diameter | alpha |", "| --- | --- | --- | --- |"]
+    for cost in COSTS:
+        fits = " | ".join(f"{power:.2f} ± {half:.2f}" for power, half in powers(sparse, cost, CAUSES))
+        lines.append(f"| {cost} | {fits} |")
+    trees = [run for run in runs if run.family in TREES]
+    large = [run for run in trees if run.robots >= SIZES[1]]
+    on_trees = powers([run for run in large if run.alpha <= run.robots // 10], "messages", ("robots",))
+    lines += ["", f"On trees with few baits, from {SIZES[1]} robots on, messages grow as N to {_shown(on_trees)}."]
     return lines
 
 
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description="Costs of planning by messages")
-    parser.add_argument("--seeds", type=int, default=1, help="teams of each size")
+    parser.add_argument("--seeds", type=int, default=2, help="teams of each size and budget")
     print("\n".join(table(parser.parse_args().seeds)))
 
 

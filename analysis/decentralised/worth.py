@@ -1,4 +1,4 @@
-"""Worth of messages: ``python -m analysis.decentralised.worth --trials 24 --out DIR``.
+"""Worth of messages: ``python -m analysis.decentralised.worth --trials 16 --out DIR``.
 
 Each plan's exact worst case as a share of the certified optimum, against the time in which the robots decide. The
 command writes ``decentralised.md`` and ``decentralised.png`` into the folder of the results.
@@ -7,6 +7,7 @@ command writes ``decentralised.md`` and ``decentralised.png`` into the folder of
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -19,7 +20,10 @@ from analysis.decentralised.radio import RADIO, element_bytes, neighbours, sendi
 from ratt_opt._files import write_atomically
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.decentralised.faults import Faults
-from ratt_opt.decentralised.plan import decentralised_ratt
+from ratt_opt.decentralised.knowledge import ExchangeParams
+from ratt_opt.decentralised.links import link_losses
+from ratt_opt.decentralised.plan import decentralised_ratt, decentralised_refined
+from ratt_opt.missions.run import run_mission
 from ratt_opt.planners.resource_aware_greedy import resource_aware_greedy
 from ratt_opt.problem import Problem
 from ratt_opt.scenario.limited_view import limited_view_scenario
@@ -41,17 +45,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.decentralised.plan import DecentralisedPlan
+    from ratt_opt.problem import Plan
+    from ratt_opt.scenario.model import Scenario
     from ratt_opt.studies.cases import Cell, Seeds
 
     Rows = Sequence[Mapping[str, str]]
 
 __all__ = ["STUDY", "figure_of", "problem_of", "write_page"]
 
-CAMERAS, ALL_ROUND, COVERAGE = "cameras of 60°", "cameras all round", "coverage"
+CAMERAS, MISSION, ALL_ROUND, COVERAGE = "cameras of 60°", "cameras on a mission", "cameras all round", "coverage"
 SIDE, SHORT, LONG = 60.0, 30, 45
 """Side of the square [m], and ranges of a link [m]: mean degrees about 3.4 and 5.4 of eight robots."""
-KINDS = ((CAMERAS, SHORT), (CAMERAS, LONG), (ALL_ROUND, LONG), (COVERAGE, LONG))
+KINDS = ((CAMERAS, SHORT), (CAMERAS, LONG), (MISSION, LONG), (ALL_ROUND, LONG), (COVERAGE, LONG))
 """Sensors or coverage, and the range of links [m]: a panel each."""
+STEPS = 8
+"""Steps of a mission under attack; the team of the last one plans."""
 SEEN_BY, ITEMS, SHARP = 0.25, 16, 1e6
 """Coverage: share of items that a choice covers, number of items, and information of one that is covered."""
 SEARCH = 20.0
@@ -64,16 +73,28 @@ def problem_of(case: Case, seeds: Seeds) -> Problem:
     kind, reach = options["kind"], float(options["links"])
     if kind == COVERAGE:
         return _coverage(case, reach, np.random.default_rng(seeds.scenario))
-    view = 60.0 if kind == CAMERAS else 360.0
-    return limited_view_scenario(
+    scenario = limited_view_scenario(
         case.n_robots,
         case.n_targets,
         alpha_s=case.alpha_s,
         alpha_c=0,
         seed=seeds.scenario,
-        view=view,
+        view=360.0 if kind == ALL_ROUND else 60.0,
         communication_range=reach,
-    ).problem()
+    )
+    return _flown(scenario, seeds.scenario) if kind == MISSION else scenario.problem()
+
+
+def _flown(scenario: Scenario, seed: int) -> Problem:
+    """The problem in which a team finds itself after some steps of a mission planned by messages, under attack."""
+    met: list[Problem] = []
+
+    def planner(problem: Problem) -> Plan:
+        met.append(problem)
+        return decentralised_ratt(problem)
+
+    run_mission(scenario, steps=STEPS, planner=planner, sharing="all surviving", seed=seed)
+    return met[-1]
 
 
 def _coverage(case: Case, reach: float, rng: np.random.Generator) -> Problem:
@@ -94,6 +115,50 @@ def with_cuts(problem: Problem, alpha_c: int) -> Problem:
     return Problem(problem.objective, problem.robot, problem.graph, problem.alpha_s, alpha_c)
 
 
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """Losses while a team plans: ``faults`` of robots that plan by messages, and the network ``left`` in the end.
+
+    Baselines plan on what is left from the start, which is in their favour.
+    """
+
+    faults: Faults
+    left: Problem
+
+
+def lost(problem: Problem, condition: str, rng: np.random.Generator) -> Lost:
+    """Draw losses, or find the worst ones: as many links as may be cut, one after the other by what its loss costs."""
+    links, faults = sorted(problem.communication.links), Faults()
+
+    def at() -> int:
+        return int(rng.integers(0, LATEST))
+
+    if condition == PUBLISHERS:
+        silent = sorted(rng.choice(problem.n_robots, SILENT, replace=False).tolist())
+        faults = Faults(crashed=tuple((at(), i) for i in silent))
+        links = [link for link in links if not set(link) & set(silent)]
+    elif condition == CHANNELS:
+        cut = [link for link in links if rng.random() < CUT_SHARE]
+        faults = Faults(cuts=tuple((at(), *link) for link in cut))
+        links = [link for link in links if link not in cut]
+    elif condition == WORST:
+        for _ in range(min(problem.alpha_c, len(links))):
+            left = [loss for loss in link_losses(problem, faults=faults).losses if loss.link in links]
+            faults = Faults(cuts=(*faults.cuts, (0, *left[0].link)))
+            links.remove(left[0].link)
+    graph = nx.empty_graph(problem.n_robots)
+    graph.add_edges_from(links)
+    alpha_c = min(problem.alpha_c, len(links))
+    return Lost(faults, Problem(problem.objective, problem.robot, graph, problem.alpha_s, alpha_c))
+
+
+NOTHING, PUBLISHERS, CHANNELS, WORST = "nothing", "two robots", "40 % of links", "worst two links"
+CONDITIONS = (NOTHING, PUBLISHERS, CHANNELS, WORST)
+"""What is lost while the team plans; all is there again when the plan is attacked."""
+LATEST, SILENT, CUT_SHARE = 20, 2, 0.4
+"""Rounds within which robots fall silent or links are lost, number of robots, share of links."""
+
+
 def _by_rag(problem: Problem) -> tuple[IntArray, float]:
     """Resource-aware greedy, and an upper bound on its time: the busiest radio in every round."""
     plan = resource_aware_greedy(problem)
@@ -102,40 +167,51 @@ def _by_rag(problem: Problem) -> tuple[IntArray, float]:
     return plan.elements, plan.rounds * (busiest * gain_and_choice + 2 * RADIO.delay[1]) if busiest else 0.0
 
 
-def _by_messages(problem: Problem, faults: Faults | None = None) -> tuple[IntArray, float]:
-    plan = decentralised_ratt(problem, faults=faults)
+def _timed(plan: DecentralisedPlan) -> tuple[IntArray, float]:
     return plan.elements, plan.decision_time
 
 
-def _half_lost(problem: Problem) -> tuple[IntArray, float]:
-    """RATT by messages, every second link lost as the robots begin to plan; the attack finds the whole network."""
-    links = sorted(problem.communication.links)[::2]
-    return _by_messages(problem, Faults(cuts=tuple((0, i, j) for i, j in links)))
-
-
-WAYS: dict[str, Callable[[Problem], tuple[IntArray, float]]] = {
-    "myopic": lambda problem: (myopic(problem).elements, 0.0),
-    "neighbours' greedy": neighbour_greedy,
-    "RAG": _by_rag,
-    "cliques": clique_selection,
-    "RATT by messages": _by_messages,
-    "half of the links lost": _half_lost,
-    "refined, with a centre": lambda problem: (refined(problem, time_limit=None, max_kicks=100).elements, np.nan),
+RATT, ONE_EXCHANGE, EXCHANGES, CENTRE = "RATT by messages", "one exchange", "all exchanges", "refined, with a centre"
+WAYS: dict[str, Callable[[Problem, Lost], tuple[IntArray, float]]] = {
+    "myopic": lambda problem, _: (myopic(problem).elements, 0.0),
+    "neighbours' greedy": lambda _, lost: neighbour_greedy(lost.left),
+    "RAG": lambda _, lost: _by_rag(lost.left),
+    "cliques": lambda _, lost: clique_selection(lost.left),
+    "choices told one hop": lambda problem, lost: _timed(decentralised_ratt(problem, faults=lost.faults, hops=1)),
+    RATT: lambda problem, lost: _timed(decentralised_ratt(problem, faults=lost.faults)),
+    ONE_EXCHANGE: lambda problem, lost: _timed(
+        decentralised_refined(problem, faults=lost.faults, params=ExchangeParams(most=1))
+    ),
+    EXCHANGES: lambda problem, lost: _timed(decentralised_refined(problem, faults=lost.faults)),
+    CENTRE: lambda problem, _: (refined(problem, time_limit=None, max_kicks=100).elements, np.nan),
 }
 """Plan and decision time [s] of each way to plan; the last one shows what a centre would reach."""
+BROKEN = ("myopic", "neighbours' greedy", "RAG", "cliques", RATT, EXCHANGES)
+"""Ways that are tried with losses as well."""
 
 
 def measured(study: Study, case: Case, seeds: Seeds) -> dict[str, Cell]:  # noqa: ARG001  (the interface of studies)
     """Share of the certified optimum [1] and decision time [s] of each way; ``open`` : gap of the optimum [1]."""
-    problem = with_cuts(problem_of(case, seeds), case.alpha_c)
+    problem, rng = with_cuts(problem_of(case, seeds), case.alpha_c), np.random.default_rng(seeds.scenario)
     optimum = solve_maxmin(problem, time_limit=SEARCH)
     row: dict[str, Cell] = {"open": 1 - optimum.lower / optimum.upper if optimum.upper > 0 else 0.0}
-    for name, way in WAYS.items():
-        elements, seconds = way(problem)
-        kept = worst_case_attack(problem, elements).lower
-        row[f"{name}/worst/share"] = min(kept / optimum.upper, 1.0) if optimum.upper > 0 else 1.0
-        row[f"{name}/worst/seconds"] = float(seconds)
+    known: dict[bytes, float] = {}
+    for condition in CONDITIONS:
+        met = lost(problem, condition, rng)
+        for name in WAYS if condition == NOTHING else BROKEN:
+            elements, seconds = WAYS[name](problem, met)
+            key = elements.tobytes()
+            if key not in known:
+                known[key] = worst_case_attack(problem, elements).lower
+            share = min(known[key] / optimum.upper, 1.0) if optimum.upper > 0 else 1.0
+            row[f"{labelled(name, condition)}/worst/share"] = share
+            row[f"{labelled(name, condition)}/worst/seconds"] = float(seconds)
     return row
+
+
+def labelled(name: str, condition: str) -> str:
+    """Name of a way with what was lost."""
+    return name if condition == NOTHING else f"{name}, {condition} lost"
 
 
 STUDY = Study(
@@ -150,32 +226,46 @@ STUDY = Study(
 
 
 def _means(rows: Rows, kind: str, links: int) -> dict[str, tuple[float, Estimate]]:
-    """Mean decision time [s] and share [%] of each way in one kind of teams."""
+    """Mean decision time [s] and share [%] of each way, with each loss, in one kind of teams."""
     own = select(rows, kind=kind, links=links)
     return {
         name: (float(column(own, f"{name}/worst/seconds").mean()), estimate(100 * column(own, f"{name}/worst/share")))
-        for name in WAYS
+        for name in (
+            labelled(way, condition) for condition in CONDITIONS for way in (WAYS if condition == NOTHING else BROKEN)
+        )
     }
 
 
+MARKERS = dict(zip(WAYS, "osD^vP*X_", strict=True))
+
+
 def figure_of(rows: Rows) -> Figure:
-    """A panel for each kind of teams: the share kept over the decision time, with 95 % intervals."""
-    figure = new_figure(12, 4.2)
-    every = figure.subplots(1, len(KINDS), sharey=True)
-    for axes, (kind, links) in zip(every, KINDS, strict=True):
-        for k, (name, (seconds, share)) in enumerate(_means(rows, kind, links).items()):
+    """A column for each kind of teams: the share kept over the decision time, and below it with what was lost."""
+    figure = new_figure(15, 7.4)
+    upper, lower = figure.subplots(2, len(KINDS), sharey="row")
+    for axes, below, (kind, links) in zip(upper, lower, KINDS, strict=True):
+        means = _means(rows, kind, links)
+        for name, marker in MARKERS.items():
+            seconds, share = means[name]
             if np.isnan(seconds):
                 axes.axhline(share.mean, color="#222222", linestyle="--", linewidth=1.2, label=name)
                 continue
             spread = [[share.mean - share.low], [share.high - share.mean]]
-            axes.errorbar([seconds], [share.mean], spread, fmt="osD^vP"[k], ms=6.5, capsize=3, label=name)
+            axes.errorbar([seconds], [share.mean], spread, fmt=marker, ms=6.5, capsize=3, label=name)
         axes.set_xscale("symlog", linthresh=0.01)
-        axes.set_xlim(-0.002, 2)
+        axes.set_xlim(-0.002, 5)
         axes.set_title(f"{kind}, {links} m")
         axes.set_xlabel("decision time at 0.25 Mbit/s [s]")
-    every[0].set_ylabel("worst case kept [% of the certified optimum]")
-    handles, labels = every[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)
+        for k, name in enumerate(MARKERS):
+            if name in BROKEN:
+                shares = [means[labelled(name, condition)][1].mean for condition in CONDITIONS]
+                below.plot(range(len(CONDITIONS)), shares, marker=MARKERS[name], color=f"C{k}", linewidth=1.2)
+        below.set_xticks(range(len(CONDITIONS)), [condition.replace(" ", "\n", 1) for condition in CONDITIONS])
+        below.set_xlabel("lost while planning")
+    for first in (upper[0], lower[0]):
+        first.set_ylabel("worst case kept [% of the certified optimum]")
+    handles, labels = upper[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=5, frameon=False)
     return figure
 
 
@@ -185,23 +275,35 @@ PAGE = """# What messages are worth
 
 {sentences}
 
-These are differences in points of the optimum, paired, with 95 % intervals; more is better for RATT by messages.
+These are points of the optimum that exchanges by messages keep more, paired, with 95 % intervals.
 
 Eight robots in a square of 60 m, linked within 30 or 45 m; the adversary blinds two robots and cuts two links.
-*Cameras of 60°* must choose among six targets what to look at, *cameras all round* see every target, and *coverage* is
-16 items of which a choice covers a quarter (`TraceObjective` with nearly perfect sensors). Each plan is attacked
-exactly. Its worst case is divided by the proved upper end of the optimum: on average {open:.1f} % of it are open, and
-count against every plan. {trials} teams a panel, 95 % intervals.
+*Cameras of 60°* must choose among six targets what to look at; those *on a mission* have flown {steps} steps under
+attack, planned by messages, and plan again. *Cameras all round* see every target, and *coverage* is 16 items of which a
+choice covers a quarter (`TraceObjective` with nearly perfect sensors). Each plan is attacked exactly. Its worst case is
+divided by the proved upper end of the optimum: on average {open:.1f} % of it are open, and count against every plan.
+{trials} teams a column, 95 % intervals.
 
-The decision time is that of radios of 0.25 Mbit/s that send one packet at a time. *RATT by messages* is simulated with
-acknowledgements and what finding the component takes. The baselines are counted in their favour: no packet is
-acknowledged, cliques and neighbours are given; the time of RAG is an upper bound. "Half of the links lost" means that
-every second link of the list is gone as the robots begin to plan, while the adversary finds the whole network. The
-dashed line is `refined`, which no message reached.
+The decision time is that of radios of 0.25 Mbit/s that send one packet at a time. What is planned by messages is
+simulated with acknowledgements and what finding the component takes; computing is not counted. The baselines are
+counted in their favour: no packet is acknowledged, cliques and neighbours are given; the time of RAG is an upper bound.
+The dashed line is `refined`, with a centre. *One exchange* stops after the first one: the plan may be used at any time.
+
+The lower row loses robots' radios (two of them, at a random round among the first {latest}), links (each with
+probability 0.4, likewise), or, as the robots begin, the two links whose loss costs RATT's plan most, one by one.
+Robots that plan by messages meet the loss while they plan; baselines know what is left from the start. All is there
+again when the adversary attacks.
 
 | | {kinds} |
 | --- | {dashes} |
 {table}
+
+## Exchanges by messages and with a centre
+
+Connected teams of ten cameras, eight targets, two robots blinded, three links cut; shares of what `refined` with 200
+kicks keeps. Printed by `python -m analysis.decentralised.exchanges --teams {teams}`.
+
+{exchanges}
 
 ## What is guaranteed, and what others prove
 
@@ -221,14 +323,15 @@ divides the team into cliques; both are about lost robots alone. We found none a
 
 ## Costs
 
-Powers of the number of robots, fitted over 12, 25, 50 and 100 of them, with 95 % intervals. Four targets, three
-controls; two robots may be blinded and no link cut, so all but two robots win an auction. An auction takes one item a
-link of a tree and direction, and finding the component one item a link list and link: without losses, on a tree, fewer
-than `4 N^2` items. On complete networks link lists are most of the bytes.
+Powers of the number of robots N, the diameter and the number of baits alpha, fitted over teams of 25, 50, 100 and 200
+with budgets of 4, 20 and 60 % of them; four targets, three controls, {seeds} teams each, 95 % intervals. An auction
+takes one item a link of a tree and direction, and finding the component one item a link list and link: without losses,
+on a tree, fewer than `4 N^2` items, and as many acknowledgements at most. On sparse networks (all but the complete
+ones) the diameter tells families apart.
 
 {costs}
 
-The table is printed by `python -m analysis.decentralised.costs --seeds 1`; this page is written by
+The tables are printed by `python -m analysis.decentralised.costs --seeds {seeds}`; this page is written by
 
 <!-- slow -->
 ```bash
@@ -242,22 +345,28 @@ def _sentences(rows: Rows) -> list[str]:
     found = []
     for kind, links in KINDS:
         own = select(rows, kind=kind, links=links)
-        ratts = column(own, "RATT by messages/worst/share")
+        best = column(own, f"{EXCHANGES}/worst/share")
         parts = []
-        for name in ("myopic", "RAG", "cliques", "half of the links lost", "refined, with a centre"):
-            change = estimate(100 * (ratts - column(own, f"{name}/worst/share")))
+        for name in ("myopic", "RAG", "cliques", RATT, CENTRE):
+            change = estimate(100 * (best - column(own, f"{name}/worst/share")))
             parts.append(f"{change.mean:+.1f} [{change.low:+.1f}, {change.high:+.1f}] against {name}")
         where = f"*{kind}, links within {links} m*"
-        found.append(f"- {where}: RATT by messages keeps {', '.join(parts[:3])}. It keeps {', '.join(parts[3:])}.")
+        found.append(f"- {where}: {', '.join(parts)}.")
     return found
+
+
+TEAMS, SEEDS = 16, 2
+"""Teams of the table of exchanges a row, and of the tables of costs."""
 
 
 def write_page(folder: Path) -> None:
     """Write the page and its figure beside the results."""
+    from analysis.decentralised.exchanges import table as exchange_table
+
     rows = read_table(folder / STUDY.name)
     means = [_means(rows, kind, links) for kind, links in KINDS]
     lines = []
-    for name in WAYS:
+    for name in means[0]:
         cells = [
             f"{one[name][1].text()} %" + ("" if np.isnan(one[name][0]) else f", {one[name][0]:.2g} s") for one in means
         ]
@@ -269,7 +378,12 @@ def write_page(folder: Path) -> None:
         kinds=" | ".join(f"{kind}, {links} m" for kind, links in KINDS),
         dashes=" | ".join("---" for _ in KINDS),
         table="\n".join(lines),
-        costs="\n".join(table(1)),
+        steps=STEPS,
+        latest=LATEST,
+        teams=TEAMS,
+        exchanges="\n".join(exchange_table(TEAMS)),
+        seeds=SEEDS,
+        costs="\n".join(table(SEEDS)),
     )
     figure = figure_of(rows)
     write_atomically(folder / "decentralised.png", lambda file: figure.savefig(file, dpi=120))
@@ -277,4 +391,4 @@ def write_page(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main("What messages are worth", [Entry(STUDY)], trials=24, after=write_page))
+    sys.exit(main("What messages are worth", [Entry(STUDY)], trials=16, after=write_page))
