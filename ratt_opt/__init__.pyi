@@ -113,6 +113,7 @@ from .missions.mission import Mission as Mission
 from .missions.result import MissionStep as MissionStep
 from .missions.run import run_mission as run_mission
 from .missions.live.tracker import Tracker as Tracker
+from .missions.live.team import TeamStep as TeamStep, TeamTrackers as TeamTrackers
 from .missions.live.gate import Gate as Gate
 from .missions.live.packets import (
     MeasurementInnovation as MeasurementInnovation,

@@ -127,7 +127,7 @@ class Lost:
 
 
 def lost(problem: Problem, condition: str, rng: np.random.Generator) -> Lost:
-    """Draw losses, or find the worst ones: as many links as may be cut, one after the other by what its loss costs."""
+    """Draw losses, or find the worst ones: links up to the budget, one after the other by what its loss costs."""
     links, faults = sorted(problem.communication.links), Faults()
 
     def at() -> int:
@@ -154,7 +154,7 @@ def lost(problem: Problem, condition: str, rng: np.random.Generator) -> Lost:
 
 NOTHING, PUBLISHERS, CHANNELS, WORST = "nothing", "two robots", "40 % of links", "worst two links"
 CONDITIONS = (NOTHING, PUBLISHERS, CHANNELS, WORST)
-"""What is lost while the team plans; all is there again when the plan is attacked."""
+"""Losses while the team plans; all is there again when the plan is attacked."""
 LATEST, SILENT, CUT_SHARE = 20, 2, 0.4
 """Rounds within which robots fall silent or links are lost, number of robots, share of links."""
 
@@ -275,7 +275,7 @@ PAGE = """# What messages are worth
 
 {sentences}
 
-These are points of the optimum that exchanges by messages keep more, paired, with 95 % intervals.
+These are differences in points of the optimum, exchanges by messages less the other way, paired, with 95 % intervals.
 
 Eight robots in a square of 60 m, linked within 30 or 45 m; the adversary blinds two robots and cuts two links.
 *Cameras of 60°* must choose among six targets what to look at; those *on a mission* have flown {steps} steps under

@@ -35,9 +35,12 @@ def track(
         Literal["renewed", "persistent", "permanent"], typer.Option("--attacks", help="How long attacks last.")
     ] = "renewed",
     sharing: Annotated[
-        Literal["best group", "all surviving"],
-        typer.Option("--sharing", help="Whose estimates the next step starts from."),
-    ] = "best group",
+        Literal["best group", "all surviving"] | None,
+        typer.Option(
+            "--sharing",
+            help="Whose estimates the next step starts from; all surviving groups' if messages plan, else the best's.",
+        ),
+    ] = None,
     horizon: Annotated[int, typer.Option("--horizon", help="Steps that a plan looks ahead.")] = 1,
     beam: Annotated[
         int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all if absent.")

@@ -22,7 +22,7 @@ from ratt_opt.missions.planning import plan_team
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
 from ratt_opt.missions.players.attackers import attack_of, get_attacker
 from ratt_opt.missions.players.named import name_of
-from ratt_opt.missions.players.planners import elements_of, get_planner, planned_with
+from ratt_opt.missions.players.planners import DecentralisedPlanner, elements_of, get_planner, planned_with
 from ratt_opt.missions.result import GroupTrack, MissionStep
 from ratt_opt.missions.sensing import group_pieces, simulated_readings
 from ratt_opt.missions.world import MissionModel, World
@@ -58,7 +58,7 @@ def run_mission(
     planner: str | Planner = "ratt",
     attacker: str | OwnAttacker = "worst",
     attacks: str | AttackModel = "renewed",
-    sharing: str = "best group",
+    sharing: str | None = None,
     horizon: int = 1,
     seed: int = 0,
     model: MissionModel | None = None,
@@ -71,17 +71,18 @@ def run_mission(
     ----------
     scenario : where the robots are, what is believed of the targets, and the adversary's budgets
     steps : T, from 1 to a million: every step is kept
-    planner : ``"ratt"``, ``"refined"``, ``"maxmin"``, ``"greedy"``, ``"myopic"``, ``"nonrobust_optimum"``,
-        ``"random"``, or ``f(problem)`` or ``f(problem, world)`` that returns a plan or its elements, such as
-        :class:`MaxMinPlanner`; ``world`` is a :class:`PlannerWorld`
+    planner : ``"ratt"``, ``"decentralised"``, ``"decentralised_refined"``, ``"refined"``, ``"maxmin"``, ``"greedy"``,
+        ``"myopic"``, ``"nonrobust_optimum"``, ``"random"``, or ``f(problem)`` or ``f(problem, world)`` that returns a
+        plan or its elements, such as :class:`MaxMinPlanner`; ``world`` is a :class:`PlannerWorld`
     attacker : ``"none"``, ``"worst"``, ``"bounded_rational"``, ``"greedy"``, ``"random"``, or ``f(problem, elements)``
         that returns an :class:`Attack`
     attacks : ``"renewed"`` in every step, ``"persistent"`` (held for 5 steps), ``"permanent"`` (failures add up), or
         an :class:`AttackModel`
-    sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's), or each group keeps its
-        own and they are merged without double counting when links return (``"all surviving"``). Then groups that
-        standing failures keep apart plan for themselves, each against what of the budgets can hit it; and the attacker
-        sees the belief of the group that knows most.
+    sharing : after a step the team goes on with ``"best group"``'s belief only (the paper's, and the default), or each
+        group keeps its own and they are merged without double counting when links return (``"all surviving"``, the
+        default for planners by messages: a robot knows what it measured and heard, as in :class:`TeamTrackers`). Then
+        groups that standing failures keep apart plan for themselves, each against what of the budgets can hit it; and
+        the attacker sees the belief of the group that knows most.
     horizon : steps H that a plan looks ahead; its first controls are executed
     seed : of everything random
     model : motions, sensors and filter; by default the paper's motions and the second-order EKF
@@ -100,9 +101,11 @@ def run_mission(
     """
     check_integer("steps", steps, low=1, high=MOST_STEPS)
     check_integer("seed", seed, low=0)
+    planner, attacker = current_name("planner", planner), current_name("attacker", attacker)
+    if sharing is None:
+        sharing = SHARING[isinstance(get_planner(planner), DecentralisedPlanner)]
     if sharing not in SHARING:
         raise InputError("sharing", f"must be {' or '.join(SHARING)}", sharing)
-    planner, attacker = current_name("planner", planner), current_name("attacker", attacker)
     world = World(scenario, model or MissionModel(), horizon)
     players = Players(get_planner(planner), get_attacker(attacker), attack_model(attacks))
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
