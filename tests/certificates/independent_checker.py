@@ -29,6 +29,7 @@ class Team:
     def __init__(self, document):
         p, self.plan = document["problem"], document["plan"]
         need(p["objective"] == "trace" and "output" not in p, "this checker reads traces of whole states only")
+        need("at_most" not in p and "rows" not in document["upper"], "this checker reads neither rows nor idle robots")
         self.dimension, self.owners, self.n = p["dimension"], p["owners"], max(p["owners"]) + 1
         need([self.owners[e] for e in self.plan] == list(range(self.n)), "an element of the plan is not its robot's")
         priors = map(self.square, p["prior"])

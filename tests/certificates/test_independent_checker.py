@@ -75,6 +75,8 @@ def forged(document):
     false = copy.deepcopy(document)
     false["upper"]["tree"] = false["upper"]["tree"][:-1]
     yield "tree", false
+    yield "rows", {**document, "upper": {**document["upper"], "rows": []}}
+    yield "at_most", {**document, "problem": {**document["problem"], "at_most": {}}}
 
 
 def test_the_second_checker_has_teeth(tmp_path):
@@ -90,7 +92,7 @@ def test_the_second_checker_has_teeth(tmp_path):
                 refused.setdefault(what, []).append(seed)
             else:
                 assert what in ("alpha_s", "alpha_c", "points"), f"{what} of seed {seed} was accepted"
-    assert {"lower", "upper", "tree", "alpha_s", "alpha_c", "points"} <= set(refused)
+    assert {"lower", "upper", "tree", "alpha_s", "alpha_c", "points", "rows", "at_most"} <= set(refused)
 
 
 def test_an_enumerated_lower_end_is_no_proof(tmp_path):
