@@ -1,8 +1,9 @@
 """Plans against rivals, on families of instances that others published: processor seconds, one run, one row a seed.
 
 Run as ``python -m analysis.benchmarks.rivals [--only WORD] [--seconds S] [--seeds K] [--orlib FOLDER]``. Rivals are
-HiGHS's scenario program (``scenario_milp.py``; its bound is a claim) and the greedy plan with exchanges. ``open`` is
-``(upper - lower) / upper``; of the p-median rows all ends are costs, and ``open`` is a share of the cost of the plan.
+HiGHS's scenario program (``scenario_program`` of ``ratt_opt.planners``; its bound is a claim) and the greedy plan with
+exchanges. ``open`` is ``(upper - lower) / upper``; of the p-median rows all ends are costs, and ``open`` is a share of
+the cost of the plan.
 
 - Resilient coverage (Shi, Zhou, Tokekar and others 2021): R robots, each of P paths covers 5 to 15 of T targets, A
   robots are lost.
@@ -26,14 +27,15 @@ count_processor_time()
 from scipy.sparse.csgraph import shortest_path  # noqa: E402
 
 import ratt_opt as ro  # noqa: E402
-from analysis.benchmarks.scenario_milp import RivalBracket, exchanges, scenario_milp  # noqa: E402
+from analysis.benchmarks.exchanges import RivalBracket, exchanges  # noqa: E402
+from ratt_opt.planners import scenario_program  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import BoolArray, FloatArray
 
-__all__ = ["FAMILIES", "Case", "Family"]
+__all__ = ["FAMILIES", "Case", "Family", "scenario_bracket"]
 
 GAP = 1e-4
 """Relative gap that counts as closed: HiGHS's own default."""
@@ -141,7 +143,14 @@ def compare(label: str, case: Case, seconds: float, *, rivals: bool) -> None:
         walked = exchanges(case.rivals, ro.greedy(case.rivals), seconds)
         walked = RivalBracket(lower=walked.lower, upper=np.inf, seconds=_since(began))
         show(label, "exchanges", walked, case.most)
-        show(label, "HiGHS", scenario_milp(case.rivals, seconds), case.most)
+        show(label, "HiGHS", scenario_bracket(case.rivals, seconds), case.most)
+
+
+def scenario_bracket(problem: ro.Problem, seconds: float) -> RivalBracket:
+    """The bracket of HiGHS's scenario program after its processor seconds."""
+    began = time.process_time()
+    found = scenario_program(problem, time_limit=seconds)
+    return RivalBracket(lower=found.lower, upper=found.claimed_upper, seconds=_since(began))
 
 
 def show(label: str, who: str, found: RivalBracket, most: float | None) -> None:

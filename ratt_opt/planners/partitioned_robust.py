@@ -44,7 +44,8 @@ def partitioned_robust(problem: Problem, *, eta: int = 1, budget: Budget | None 
     InputError : ``eta`` is no integer of at least 1.
 
     Source: Bogunovic, Mitrovic, Scarlett, Cevher, Robust submodular maximization: a non-uniform partitioning approach,
-    ICML 2017, Algorithm 1.
+    ICML 2017 (arXiv 1706.04918), Algorithm 1. Read here: the abstract (buckets of exponentially growing size, the share
+    of Orlin and others for ``alpha_s = o(N)``). Taken on trust: the numbers of buckets and the limits of ``eta``.
     """
     check_integer("eta", eta, low=1)
     selection = Selection.of(check_problem(problem, knows_at_most=True), budget)

@@ -26,7 +26,8 @@ def resilient_selection(problem: Problem, *, budget: Budget | None = None) -> Pl
     function of curvature k, and ``(1 - c)^3`` of it for total curvature c.
 
     Source: Tzoumas, Jadbabaie, Pappas, Resilient non-submodular maximization over matroid constraints,
-    arXiv 1804.01013 (2018), Algorithm 1 and Theorem 1.
+    arXiv 1804.01013 (2018), Algorithm 1 and Theorem 1. Read here: the abstract (any number of losses, curvature). Taken
+    on trust: the lines of the algorithm and the shares; tests compare the first share with all plans.
     """
     selection = Selection.of(check_problem(problem, knows_at_most=True), budget)
     single = problem.objective.singletons()

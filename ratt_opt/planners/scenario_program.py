@@ -30,6 +30,12 @@ if TYPE_CHECKING:
 __all__ = ["ScenarioPlan", "scenario_program"]
 
 
+TOLERANCE = 1e-6
+"""Relative room around the ends known, for the rounding of HiGHS."""
+FIRST_GAP = 1e-4
+"""Relative gap of HiGHS while attacks are added: its proofs of the last ten-thousandth take most of the time."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ScenarioPlan(Plan):
     """A plan of the scenario program.
@@ -91,12 +97,14 @@ class _ScenarioSearch:
         self.best, attacks = ratt(self.problem, budget=self.budget).elements, 0
         self.upper = float(self.problem.objective(range(self.problem.objective.n)))
         attack, model, met = self._attack(self.best), _ScenarioRows(self.problem), set[Attack]()
-        # An attack that comes again is bounded already: what is open is within the tolerances of HiGHS.
-        while not self._closed and not self.budget.is_over and attack not in met:
-            model.add_attack(attack)
+        while not self._closed and not self.budget.is_over:
+            if attack not in met:
+                model.add_attack(attack)
+                attacks += 1
+            elif not model.tighten():  # it is bounded already: what is open is within the tolerances of HiGHS
+                break
             met.add(attack)
-            attacks += 1
-            plan, bound = model.solve(self.budget)
+            plan, bound = model.solve(self.budget, max(self.lower, 0.0), self.upper)
             self.upper = min(self.upper, bound)
             if plan is None:
                 break
@@ -144,7 +152,7 @@ class _ScenarioRows:
 
         self._integer = highspy.HighsVarType.kInteger
         highs = self.highs = silent_solver()()
-        for name, value in {"threads": 1, "random_seed": 0, "mip_rel_gap": 0.0}.items():
+        for name, value in {"threads": 1, "random_seed": 0, "mip_rel_gap": FIRST_GAP}.items():
             highs.setOptionValue(name, value)
         f = self.problem.objective
         self._most = float(f(range(f.n)))
@@ -152,6 +160,12 @@ class _ScenarioRows:
         self._chosen = [highs.addVariable(0, 1, type=self._integer) for _ in range(f.n)]
         for choice in self.problem.choices:
             highs.addConstr(sum(self._chosen[e] for e in choice) == 1)
+
+    def tighten(self) -> bool:
+        """Solve without a gap from now on; whether there was one."""
+        _, gap = self.highs.getOptionValue("mip_rel_gap")
+        self.highs.setOptionValue("mip_rel_gap", 0.0)
+        return bool(gap > 0)
 
     def add_attack(self, attack: Attack) -> None:
         """Bound the least worth by that of the best group that the attack leaves."""
@@ -180,9 +194,10 @@ class _ScenarioRows:
                 self.highs.addConstr(sum(shares) <= 1)
         return worth
 
-    def solve(self, budget: Budget) -> tuple[IntArray | None, float]:
-        """The plan that HiGHS found, or ``None``, and the bound that it claims."""
+    def solve(self, budget: Budget, lower: float, upper: float) -> tuple[IntArray | None, float]:
+        """The plan that HiGHS found between the ends known, or ``None``, and the bound that it claims."""
         highs = self.highs
+        highs.changeColBounds(self._least.index, lower * (1 - TOLERANCE), upper * (1 + TOLERANCE))
         asked = (highs.cbMipInterrupt, highs.cbSimplexInterrupt, highs.cbIpmInterrupt)
 
         with interrupts_afterwards() as met:

@@ -21,6 +21,7 @@ def sensing_only(problem: Problem, *, budget: Budget | None = None) -> Plan:
     Guarantee: as there; that of :func:`ratt_opt.sensing_only_bound`.
 
     Source: Zhou, Tzoumas, Pappas, Tokekar, Resilient active target tracking with multiple robots, IEEE Robotics and
-    Automation Letters 4(1), 2019.
+    Automation Letters 4(1), 2019. Not read here: the algorithm is Algorithm 1 of ratt.tex for lost sensors alone, which
+    cites it.
     """
     return bait_and_greedy(problem, check_problem(problem, knows_at_most=True).alpha_s, budget)

@@ -41,7 +41,8 @@ def uniform_buckets(problem: Problem, *, size: int | None = None, budget: Budget
     InputError : ``size`` is no integer of at least 1.
 
     Source: Orlin, Schulz, Udwani, Robust monotone submodular function maximization, IPCO 2016 and Mathematical
-    Programming 172, 2018, the 0.387 algorithm, in the form of Bogunovic and others 2017, Section 2.
+    Programming 172, 2018 (arXiv 1507.06616), the 0.387 algorithm, in the form of Bogunovic and others 2017, Section 2.
+    Read here: the abstract (0.387 for ``alpha_s`` far below the root of N). Taken on trust: the size of a bucket.
     """
     lost = check_problem(problem, knows_at_most=True).alpha_s
     count = problem.n_robots if problem.at_most is None else problem.at_most

@@ -22,7 +22,7 @@ def rivals(monkeypatch):
 def test_rivals_are_right_on_a_small_instance(rivals, lost):
     case = rivals.coverage(4, 3, 12, lost).draw(0)
     best = ro.exhaustive_optimum(case.rivals).lower
-    program = rivals.scenario_milp(case.rivals, 20)
+    program = rivals.scenario_bracket(case.rivals, 20)
     walked = rivals.exchanges(case.rivals, ro.greedy(case.rivals), 20)
     assert program.lower == pytest.approx(best)
     assert program.upper == pytest.approx(best)
