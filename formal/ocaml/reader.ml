@@ -341,6 +341,73 @@ let point pb value =
       EigenPoint (nat "point target" target, exact "point t" size, exacts_of_length "point v" d direction)
   | _ -> format "point" "must be a list of 3 entries"
 
+(* The tangent of one target: as a point, of that target alone. *)
+let tangent pb value =
+  let d = int_of_nat pb.dimension in
+  match (pb.objective, array "tangent" value) with
+  | (Trace | LogDet), [ target; y ] ->
+      let j = index "tangent target" target in
+      if j >= List.length pb.priors then format "tangent target" "names no target";
+      let length = match pb.outputs with Some parts -> List.length (List.nth parts j) | None -> d * (d + 1) / 2 in
+      (nat_of_int j, MatrixTouch (exacts_of_length "tangent Y" length y))
+  | MaxEigenvalue, [ target; size; direction ] ->
+      (nat "tangent target" target, EigenTouch (exact "tangent t" size, exacts_of_length "tangent v" d direction))
+  | _ -> format "tangent" "must be a list of two entries, of three for maxeig"
+
+(* A lemma's tree: what a branch does not name is one part more, with the option of no element, numbered as the elements. *)
+let lemma owned size value =
+  match fields "lemma" [ "target"; "elements"; "scores"; "constant"; "tree" ] value with
+  | [ target; elements; scores; constant; tree ] ->
+      let elements = indices "lemma elements" elements and given = exacts "lemma scores" scores in
+      if List.length elements <> List.length given then format "lemma scores" "must be as many as its elements";
+      let dense = Array.make size { man = Big.zero; sc = Big.zero } in
+      List.iter2 (fun e x -> if e >= size then format "lemma elements" "names no element" else dense.(e) <- x) elements given;
+      let rec node left next depth =
+        if depth > deepest then format "lemma tree" "is too deep";
+        match next () with
+        | Number _ as leaf -> LemmaLeaf (nat "lemma leaf" leaf)
+        | branch -> (
+            match fields "lemma branch" [ "element"; "parts" ] branch with
+            | [ robot; parts ] ->
+                let i = index "lemma branch robot" robot in
+                let blocks = List.map (indices "lemma branch") (array "lemma branch parts" parts) in
+                let before = Option.value (Robots.find_opt i left) ~default:[] in
+                let rest = List.filter (fun e -> not (List.exists (List.mem e) blocks)) before in
+                let below block = let child = node (Robots.add i block left) next (depth + 1) in (List.map nat_of_int block, child) in
+                LemmaBranch (nat_of_int i, in_order below (if rest = [] then blocks else blocks @ [ rest ]))
+            | _ -> assert false) in
+      { lemma_target = nat "lemma target" target; lemma_scores = Array.to_list dense; lemma_constant = exact "lemma constant" constant;
+        lemma_proof = consume "lemma" (array "lemma tree" tree) (fun next -> node (Robots.map (fun own -> own @ [ size ]) owned) next 0) }
+  | _ -> assert false
+
+(* Rows name what differs from the usual inequalities; here each is written out, by target. *)
+let rows pb size owned given =
+  let field name = Option.value (List.assoc_opt name given) ~default:(List []) in
+  let tangents = List.map (tangent pb) (array "tangents" (field "tangents")) in
+  let lemmas = List.map (lemma owned size) (array "lemmas" (field "lemmas")) in
+  let targets = Array.of_list (List.map (fun (j, _) -> int_of_nat j) tangents @ List.map (fun l -> int_of_nat l.lemma_target) lemmas) in
+  let by_target where numbers =
+    let add found k =
+      if k >= Array.length targets then format where "names no inequality";
+      if Robots.mem targets.(k) found then raise (Fault ("upper proof: " ^ where ^ " names two inequalities of a target"));
+      Robots.add targets.(k) k found in
+    List.fold_left add Robots.empty (List.map (index where) (array where numbers)) in
+  let usual = by_target "usual" (field "usual") in
+  let row value =
+    match array "row" value with
+    | [ a; g; numbers ] ->
+        let named = by_target "row" numbers in
+        let whole = if pb.objective = MaxEigenvalue then named else Robots.union (fun _ k _ -> Some k) named usual in
+        ((nat "row attack" a, nat "row group" g), List.map (fun (_, k) -> nat_of_int k) (Robots.bindings whole))
+    | _ -> format "row" "must be a list of 3 entries" in
+  let spacing value =
+    if pb.objective <> Trace then raise (Fault "upper proof: this checker reads the spacing of values for the trace only");
+    match fields "spacing" [ "count"; "lemmas" ] value with
+    | [ count; numbers ] -> (nat "spacing count" count, List.map (nat "spacing lemmas") (array "spacing lemmas" numbers))
+    | _ -> assert false in
+  { tangent_list = tangents; lemma_list = lemmas; row_list = List.map row (array "rows" (field "rows"));
+    spacing = Option.map spacing (List.assoc_opt "spacing" given) }
+
 let cut value =
   match array "cut" value with
   | [ a; g; k ] -> ((nat "cut attack" a, nat "cut group" g), nat "cut point" k)
@@ -355,16 +422,19 @@ let cover size value =
   | _ -> assert false
 
 let proofs pb size prior_range upper lower =
-  let has_covers = match upper with Record pairs -> List.mem_assoc "covers" pairs | _ -> false in
-  let given = [ "attacks"; "points"; "cuts"; "tree" ] in
-  match fields "upper proof" (if has_covers then given @ [ "covers" ] else given) upper with
-  | attacks :: points :: cuts :: tree :: covers ->
+  let stated = match upper with Record pairs -> pairs | _ -> [] in
+  let optional = List.filter (fun name -> List.mem_assoc name stated) [ "covers"; "tangents"; "lemmas"; "usual"; "rows"; "spacing" ] in
+  let has_covers = List.mem "covers" optional in
+  match fields "upper proof" ([ "attacks"; "points"; "cuts"; "tree" ] @ optional) upper with
+  | attacks :: points :: cuts :: tree :: _ ->
+      let covers = Option.to_list (List.assoc_opt "covers" stated) in
       let listed = List.map attack (array "attacks" attacks) in
       let arity a = if attack_ok pb.net a then List.length (seeing_groups pb.net a) else raise (Fault "upper proof: an attack is not allowed") in
       let groups = Array.of_list (List.map arity listed) and named = Hashtbl.create 16 in
       let add left (e, robot) = Robots.update robot (fun own -> Some (Option.value own ~default:[] @ [ e ])) left in
       let owned = List.mapi (fun e robot -> (e, int_of_nat robot)) pb.net.owners in
-      let left = if has_covers then List.fold_left add Robots.empty owned else Robots.empty in
+      let owned = List.fold_left add Robots.empty owned in
+      let left = if has_covers then owned else Robots.empty in
       let zero = { man = Big.zero; sc = Big.zero } in
       let low, high =
         match (pb.objective, exacts "prior_eigenvalue" prior_range) with
@@ -375,7 +445,7 @@ let proofs pb size prior_range upper lower =
         cut_list = List.map cut (array "cuts" cuts);
         cover_list = List.concat_map (fun found -> List.map (cover size) (array "covers" found)) covers;
         upper_part = consume "upper" (array "upper tree" tree) (fun next -> upper_node groups named left next 0);
-        lower_part = lower }
+        lower_part = lower; rows_part = rows pb size owned stated }
   | _ -> assert false
 
 (* What the problem is said to be made from: no statement depends on it. *)

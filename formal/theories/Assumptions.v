@@ -1,6 +1,6 @@
 (** The headline theorems: what each of them assumes. *)
 From Ratt Require Import Teams Guarantees Planner Greedy GroupSize SplitTeams GroupSizeComplete NMax Survivors Families Approached
-  Quadratic Criteria Logdet Submodular Covers Gains CaseTree Costs GroupProofs Positive SizeCosts SizeProofs Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
+  Quadratic Criteria Logdet Submodular Covers Lemmas Gains CaseTree Costs GroupProofs Positive SizeCosts SizeProofs Soundness Certificate Examples ExamplesNMax ExamplesRatt ExamplesCurvature.
 
 Print Assumptions ratt_bait_or_greedy.
 Print Assumptions submodular_guarantee.
@@ -50,6 +50,10 @@ Print Assumptions logdet_gains_diminish.
 Print Assumptions logdet_value_submodular.
 Print Assumptions failed_coverP.
 Print Assumptions check_cover_leafP.
+Print Assumptions check_lemmaP.
+Print Assumptions row_sumP.
+Print Assumptions rowP.
+Print Assumptions spaced_value.
 Print Assumptions check_group_gainsP.
 Print Assumptions check_casesP.
 Print Assumptions flow_valueP.

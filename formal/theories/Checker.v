@@ -1,7 +1,7 @@
 (** The executable checker: problem, claim and proofs as plain data, decided in exact arithmetic. *)
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect.
-From Ratt Require Import Dyadic DyadicMatrix DyadicLog Outputs Graph Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
+From Ratt Require Import Dyadic DyadicMatrix DyadicLog Outputs Graph Scores Covers Lemmas Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes Forced.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -25,6 +25,8 @@ Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
 (** Where a linear bound touches: one matrix per target (trace, log-det), or a target, a length and a direction. Matrices
     are symmetric, but with outputs: then they have a column for each row of the output, and are listed whole. *)
 Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
+(** The same of one target. *)
+Inductive touch := MatrixTouch of seq dyadic | EigenTouch of dyadic & seq dyadic.
 (** Version 1: a size tree, an attack tree. Version 2: the sets alone, dual prices, a cover, sizes of groups. *)
 Inductive lower_proof :=
 | ForcedSize of nat & size_tree
@@ -36,6 +38,15 @@ Inductive lower_proof :=
 | NoLower.
 (** A cover: an attack on links, by number, the elements that are left out, and a point for each group. *)
 Definition listed_cover := (nat * seq nat * seq nat)%type.
+(** Inequalities of single targets, tangents first, and rows: attack, group, an inequality of each target (of one, for the
+    largest eigenvalue). [spacing]: how many targets a plan sees at most, and lemmas without scores. *)
+Record rows_data := RowsData {
+  tangent_list : seq (nat * touch);
+  lemma_list : seq listed_lemma;
+  row_list : seq (nat * nat * seq nat);
+  spacing : option (nat * seq nat)
+}.
+Definition no_rows : rows_data := RowsData [::] [::] [::] None.
 Record proofs := Proofs {
   prior_low : dyadic;
   prior_high : dyadic;
@@ -44,7 +55,8 @@ Record proofs := Proofs {
   cut_list : seq (nat * nat * nat);
   cover_list : seq listed_cover;
   upper_part : upper_tree;
-  lower_part : lower_proof
+  lower_part : lower_proof;
+  rows_part : rows_data
 }.
 
 (** ** Small tools *)
@@ -177,34 +189,53 @@ Variables (base_high : dyadic).
 (** A weight matrix per target ([::] for none) and a constant. *)
 Definition dots (Ws Is : seq dmat) : dyadic :=
   dsum [seq mdot d x.1 x.2 | x <- zip Ws Is & ~~ nilp x.1].
-Definition gradient (pt : point) : option (seq dmat * dyadic) :=
-  match kind, pt with
-  | Trace, TracePoint ys =>
-      if size ys == m then
-        let Ys := mkseq (fun j => touching d o j (nth [::] ys j)) m in
-        let Ws := mkseq (fun j => mscale d (nth d0 ws j) (outer_product d (output_rows d o j) (nth [::] Ys j))) m in
-        let c := dsum [seq dmul (nth d0 ws j) (dsub (trace_with d (nth None Ss j) (nth [::] ps j))
-                   (dmul (dnat 2) (touching_trace d o j (nth [::] Ys j)))) | j <- iota 0 m] in
-        Some (Ws, dadd c (dots Ws highs))
+Definition gradient_at (j : nat) (t : touch) : option (dmat * dyadic) :=
+  let wj := nth d0 ws j in
+  let close W c := Some (W, dadd c (mdot d W (nth [::] highs j))) in
+  match kind, t with
+  | Trace, MatrixTouch y =>
+      let Y := touching d o j y in
+      close (mscale d wj (outer_product d (output_rows d o j) Y))
+        (dmul wj (dsub (trace_with d (nth None Ss j) (nth [::] ps j)) (dmul (dnat 2) (touching_trace d o j Y))))
+  | LogDet, MatrixTouch y =>
+      let Y := unpack d y in
+      if is_pd d Y then
+        close (mscale d wj Y) (dmul wj (dsub (log_quotient_up 110 400 (mdet d (nth [::] ps j)) (mdet d Y)) (dnat d)))
       else None
-  | LogDet, TracePoint ys =>
-      let Ys := [seq unpack d y | y <- ys] in
-      if (size ys == m) && all (is_pd d) Ys then
-        let Ws := mkseq (fun j => mscale d (nth d0 ws j) (nth [::] Ys j)) m in
-        let c := dsum [seq dmul (nth d0 ws j) (dsub (log_quotient_up 110 400 (mdet d (nth [::] ps j)) (mdet d (nth [::] Ys j)))
-                   (dnat d)) | j <- iota 0 m] in
-        Some (Ws, dadd c (dots Ws highs))
-      else None
-  | MaxEigenvalue, EigenPoint j t v =>
+  | MaxEigenvalue, EigenTouch t v =>
       let s := length_of d (nth None Ss j) v in
       let b := quotient_up 256 (dmul t t) s in
-      if [&& (j < m)%N, dlt d0 s & dle (dmul t t) (dmul b s)] then
-        let W := mkm d (fun i k => dmul (dmul (nth d0 ws j) b) (dmul (nth d0 v i) (nth d0 v k))) in
-        let Ws := mkseq (fun i => if i == j then W else [::]) m in
-        Some (Ws, dadd (dsub base_high (dmul (dnat 2) (dmul (nth d0 ws j) t))) (dots Ws highs))
+      if dlt d0 s && dle (dmul t t) (dmul b s) then
+        close (mkm d (fun i k => dmul (dmul wj b) (dmul (nth d0 v i) (nth d0 v k))))
+          (dsub base_high (dmul (dnat 2) (dmul wj t)))
       else None
   | _, _ => None
   end.
+Definition gradient (pt : point) : option (seq dmat * dyadic) :=
+  match pt with
+  | TracePoint ys =>
+      if (size ys == m) && (if kind is MaxEigenvalue then false else true) then
+        if all_some [seq gradient_at j (MatrixTouch (nth [::] ys j)) | j <- iota 0 m] is Some gs then
+          Some ([seq g.1 | g <- gs], dsum [seq g.2 | g <- gs])
+        else None
+      else None
+  | EigenPoint j t v =>
+      if (j < m)%N && (if kind is MaxEigenvalue then true else false) then
+        if gradient_at j (EigenTouch t v) is Some g then Some (mkseq (fun i => if i == j then g.1 else [::]) m, g.2)
+        else None
+      else None
+  end.
+Definition target_scores (j : nat) (g : dmat * dyadic) : target_bound :=
+  (j, ([seq mdot d g.1 (nth [::] row j) | row <- infos], g.2)).
+(** The tangents of single targets. *)
+Definition tangent_bounds (ts : seq (nat * touch)) : option (seq target_bound) :=
+  all_some [seq (if (t.1 < m)%N then (if gradient_at t.1 t.2 is Some g then Some (target_scores t.1 g) else None)
+    else None) | t <- ts].
+(** A row has one inequality of each target; none is worth less than the largest eigenvalue. *)
+Definition row_ok (bounds : seq target_bound) (ks : seq nat) : bool :=
+  all (fun k => (k < size bounds)%N) ks &&
+  let js := [seq (inequality_of bounds k).1 | k <- ks] in
+  if kind is MaxEigenvalue then (if js is [:: j] then (j < m)%N else false) else js == iota 0 m.
 Definition point_scores (g : seq dmat * dyadic) : tangent := ([seq dots g.1 row | row <- infos], g.2).
 Definition masked (owner group : seq nat) (s : seq dyadic) : seq dyadic :=
   [seq if x.1 \in group then x.2 else d0 | x <- zip owner s].
@@ -212,6 +243,13 @@ Definition cut_bounds (owner : seq nat) (groups : seq (seq (seq nat))) (pts : se
     (cs : seq (nat * nat * nat)) : seq cut_bound :=
   [seq let: (a, g, k) := c in let q := nth ([::], d0) pts k in
        CutBound a g q.2 (masked owner (nth [::] (nth [::] groups a) g) q.1) | c <- cs].
+Definition row_bounds (w : network) (groups : seq (seq (seq nat))) (bounds : seq target_bound)
+    (rs : seq (nat * nat * seq nat)) : seq cut_bound :=
+  [seq let: (a, g, ks) := r in let q := row_sum w bounds ks in
+       CutBound a g q.2 (masked (owners w) (nth [::] (nth [::] groups a) g) q.1) | r <- rs].
+Definition rows_in_range (groups : seq (seq (seq nat))) (bounds : seq target_bound) (rs : seq (nat * nat * seq nat)) : bool :=
+  all (fun r => let: (a, g, ks) := r in
+    [&& (a < size groups)%N, (g < size (nth [::] groups a))%N & row_ok bounds ks]) rs.
 Definition cuts_in_range (groups : seq (seq (seq nat))) (n : nat) (cs : seq (nat * nat * nat)) : bool :=
   all (fun c => let: (a, g, k) := c in
     [&& (a < size groups)%N, (g < size (nth [::] groups a))%N & (k < n)%N]) cs.
@@ -350,19 +388,58 @@ Definition gains_leaf (highs : seq dmat) (defects : seq (seq dyadic)) (groups : 
       [seq i <- iota 0 (robots w) | i \in g]) (nth [::] groups a).
 Definition gains_are_used : bool := if objective pb is LogDet then has_gains (upper_part pr) else false.
 
-Definition check_upper_part (highs : seq dmat) (defects : seq (seq dyadic)) : bool :=
+(** ** Values that plans can have *)
+Definition seen (j e : nat) : bool := ~~ all (all is_zero) (nth [::] (nth [::] info_matrices e) j).
+(** What a target is worth to all that hold an element, at least. *)
+Definition worth_alone (lows : seq dmat) (defects : seq (seq dyadic)) (j e : nat) : option dyadic :=
+  let S := nth None output_squares j in
+  let lost := mscalar d (dmul (dnat (robots w).+1) (worst_defect defects j)) in
+  let L := madd d (msub d (nth [::] lows j) lost) (nth [::] (nth [::] info_matrices e) j) in
+  if trace_inverse_up 256 d S L is Some y then
+    Some (dmul (nth d0 ws j) (dsub (trace_with d S (nth [::] prior_matrices j)) y))
+  else None.
+Definition lemma_at (k : nat) : listed_lemma := nth (ListedLemma 0 [::] d0 (LemmaLeaf 0)) (lemma_list (rows_part pr)) k.
+Definition bounds_seen (ks : seq nat) (j : nat) : bool :=
+  has (fun k => [&& (k < size (lemma_list (rows_part pr)))%N, lemma_target (lemma_at k) == j & all is_zero (lemma_scores (lemma_at k))]) ks.
+(** What sees [n] targets is worth [n * least] at least, and [n * most] at most. Values that are below [count + 1] times
+    the former are at most [count] times the latter: plans need only be worth at most this. *)
+Definition enough_shown (lows : seq dmat) (defects : seq (seq dyadic)) : option dyadic :=
+  match spacing (rows_part pr), objective pb with
+  | None, _ => Some (upper cl)
+  | Some (count, ks), Trace =>
+      let es := iota 0 (size (owners w)) in
+      let pairs := flatten [seq [seq (j, e) | e <- es & seen j e] | j <- iota 0 m] in
+      if all_some [seq worth_alone lows defects x.1 x.2 | x <- pairs] is Some ys then
+        let least := dopp (largest_of (fun i => dopp (nth d0 ys i)) (iota 0 (size ys))) in
+        let most := dmax d0 (largest_of (fun k => lemma_constant (lemma_at k)) ks) in
+        if dle d0 least && all (fun j => has (seen j) es ==> bounds_seen ks j) (iota 0 m) then
+          Some (if dle (dmul (dnat count) most) (upper cl) then
+            dmax (upper cl) (dsub (dmul (dnat count.+1) least) (dtiny 200)) else upper cl)
+        else None
+      else None
+  | _, _ => None
+  end.
+
+Definition check_upper_part (lows highs : seq dmat) (defects : seq (seq dyadic)) : bool :=
   let groups := [seq seeing_groups w a | a <- listed pr] in
-  let Ss := output_squares in let ps := prior_matrices in
+  let Ss := output_squares in let ps := prior_matrices in let infos := info_matrices in
   let grads := [seq gradient (objective pb) d m ws (outputs pb) Ss ps highs (prior_high pr) pt | pt <- points pr] in
-  if all_some grads is Some gs then
-    let pts := [seq point_scores d info_matrices g | g <- gs] in
-    let cuts := cut_bounds (owners w) groups pts (cut_list pr) in
+  let rows := rows_part pr in
+  match all_some grads, tangent_bounds (objective pb) d m ws (outputs pb) Ss ps highs infos (prior_high pr) (tangent_list rows),
+        enough_shown lows defects with
+  | Some gs, Some tangents, Some top =>
+    let pts := [seq point_scores d infos g | g <- gs] in
+    let bounds := tangents ++ [seq lemma_bound l | l <- lemma_list rows] in
+    let cuts := cut_bounds (owners w) groups pts (cut_list pr) ++ row_bounds w groups bounds (row_list rows) in
     let covers := cover_bounds w groups pts (cover_list pr) in
     let gains := if gains_are_used then gains_leaf highs defects groups else (fun _ _ => false) in
     [&& all (attack_ok w) (listed pr), cuts_in_range groups (size gs) (cut_list pr),
-        covers_in_range (listed pr) groups (size gs) (cover_list pr), dle d0 (upper cl)
-      & check_upper w groups cuts covers (upper cl) gains (upper_part pr) (all_plans w) [::]]
-  else false.
+        covers_in_range (listed pr) groups (size gs) (cover_list pr), dle d0 (upper cl),
+        all (fun l => (lemma_target l < m)%N && check_lemma w tangents l) (lemma_list rows),
+        rows_in_range (objective pb) m groups bounds (row_list rows)
+      & check_upper w groups cuts covers top gains (upper_part pr) (all_plans w) [::]]
+  | _, _, _ => false
+  end.
 
 (** What the checker found out. *)
 Inductive verdict := Refused | UpperOnly | Proved.
@@ -374,7 +451,7 @@ Definition check : verdict :=
     match all_some [seq inverse_low d P | P <- prior_matrices], all_some [seq inverse_high d P | P <- prior_matrices],
           all_some [seq all_some [seq defect d A | A <- row] | row <- info_matrices] with
     | Some lows, Some highs, Some defects =>
-        if room_ok lows defects && check_upper_part highs defects then
+        if room_ok lows defects && check_upper_part lows highs defects then
           if has_lower then (if check_lower_part lows defects then Proved else Refused) else UpperOnly
         else Refused
     | _, _, _ => Refused

@@ -18,7 +18,7 @@ Definition line_problem (infos : seq nat) (w : network) : problem :=
 
 (** One linear bound at the posterior 1/8 on the first group of one attack. *)
 Definition one_leaf (a : listed_attack) (t : attack_tree) : proofs :=
-  Proofs d0 d0 [:: a] [:: TracePoint [:: [:: Dyadic 1 3]]] [:: (0, 0, 0)%N] [::] (Leaf [:: (0%N, whole 1)]) (AttackTree t).
+  Proofs d0 d0 [:: a] [:: TracePoint [:: [:: Dyadic 1 3]]] [:: (0, 0, 0)%N] [::] (Leaf [:: (0%N, whole 1)]) (AttackTree t) no_rows.
 
 (** ** A blinded robot relays: robots in a line, one of them blinded, no link cut. *)
 Definition relay_infos : seq nat := [:: 4; 1; 3; 4].
@@ -138,7 +138,7 @@ pose cuts := [:: (0, 0, 0)%N; (0, 1, 0)%N].
 apply: (@exact_values (line_problem _ _) _ _ (Proofs d0 d0 [:: ([::], [:: (1, 2)%N])] [:: TracePoint [:: [:: Dyadic 1 3]]] cuts [::]
   (OnWinner 0 [:: Leaf [:: (0%N, whole 1)]; Leaf [:: (1%N, whole 1)]])
   (AttackTree (Blinded 0 Beyond (Blinded 1 Beyond (Blinded 2 Beyond (Blinded 3 Beyond
-    (Group 0 [:: Group 1 [:: Worth 0; Group 2 [:: Beyond; Group 3 [:: Beyond; Worth 1; Beyond]; Beyond]]]))))))) erefl).
+    (Group 0 [:: Group 1 [:: Worth 0; Group 2 [:: Beyond; Group 3 [:: Beyond; Worth 1; Beyond]; Beyond]]])))))) no_rows) erefl).
 by vm_compute.
 Qed.
 
@@ -156,7 +156,7 @@ Theorem part_exact : let pb := part_problem in let cl := Claim part_plan part_va
 Proof.
 apply: (@exact_values part_problem _ _ (Proofs d0 d0 [:: ([:: 0%N], [::])]
   [:: TracePoint [:: [:: Dyadic 1 2; whole 0; whole 1; Dyadic 1 1]]] [:: (0, 0, 0)%N] [::] (Leaf [:: (0%N, whole 1)])
-  (AttackTree (Group 0 [:: Group 1 [:: Blinded 0 (Blinded 1 Beyond (Worth 0)) (Worth 0); Beyond]]))) erefl).
+  (AttackTree (Group 0 [:: Group 1 [:: Blinded 0 (Blinded 1 Beyond (Worth 0)) (Worth 0); Beyond]])) no_rows) erefl).
 by vm_compute.
 Qed.
 End Values.

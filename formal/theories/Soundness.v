@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Outputs Graph Worth Scores Covers Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Outputs Graph Worth Scores Covers Lemmas Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -37,6 +37,12 @@ Proof.
 rewrite -[y + t + z]addrA [t + z]addrC; move: (z + t) => q; set u := a - q.
 rewrite [u + x + _ + _]addrACA; have -> : b - a + q = b - u by rewrite /u opprB addrA addrAC.
 by rewrite -[u + x + y]addrA [RHS]addrC [RHS]addrA subrK.
+Qed.
+
+Lemma rearrange3 (V : zmodType) (a b e x y z : V) : (a + (e + x)) - ((b - y) + e) = (a - b) + ((x + z) + (y - z)).
+Proof.
+rewrite [x + z + _]addrACA subrr addr0 opprD opprB addrACA [e + x]addrC addrK [y - b]addrC addrA -addrA.
+by rewrite [y + x]addrC.
 Qed.
 
 Lemma logdet_shape (F : realFieldType) (p l y q n tr h s : F) : p - y <= q -> l + y <= tr - n -> tr <= h + s ->
@@ -389,103 +395,132 @@ rewrite !formBm !form_scalar formZm !subr_ge0 => le.
 by rewrite mulrAC ler_pdivl_mulr // [form _ _ _ * _]mulrC.
 Qed.
 
+(** What a set is worth for one target: its part of the sum; for the largest eigenvalue, what the set would be worth if the
+    target's were the largest. *)
+Definition target_value (j : target) (S : {set element}) : F :=
+  let L := posterior prior_of info_of S j in
+  match objective pb with
+  | Trace => weight_of j * \tr (counting output_of j (prior_of j)) - weight_of j * \tr (counting output_of j (invmx L))
+  | LogDet => weight_of j * ln (\det (prior_of j)) - weight_of j * - ln (\det L)
+  | MaxEigenvalue => base - weight_of j * lmax (counting output_of j (invmx L))
+  end.
+
+Lemma value_sum S : objective pb <> MaxEigenvalue -> value S = \sum_j target_value j S.
+Proof.
+rewrite /value /target_value; case: (objective pb) => // _; first by rewrite /trace_value /trace_base /trace_penalty -sumrB.
+by rewrite /logdet_value /logdet_base /logdet_penalty -sumrB.
+Qed.
+
+Lemma value_le_target j S : objective pb = MaxEigenvalue -> value S <= target_value j S.
+Proof.
+move=> e; rewrite valueE /penalty /target_value e ler_add2l ler_opp2.
+exact: (le_largest (fun k => weight_of k * lmax (counting output_of k (invmx (posterior prior_of info_of S k))))).
+Qed.
+
+Lemma all_some_iota (U : Type) (f : nat -> option U) y0 r (j : target) :
+  all_some [seq f i | i <- iota 0 m] = Some r -> f j = Some (nth y0 r j).
+Proof.
+move=> h; have [_ h2] := all_some_nth 0%N y0 j h; rewrite size_iota in h2.
+by have := h2 (ltn_ord j); rewrite nth_iota // add0n.
+Qed.
+
+Lemma gradient_atP (j : target) t g p (G : {set robot}) :
+  gradient_at (objective pb) d ws (outputs pb) Ss (prior_matrices pb) highs (prior_high pr) j t = Some g ->
+  is_plan (team_of w) p -> target_value j (contributed p G) <=
+    val g.2 + \sum_(i in G) val (mdot d g.1 (nth [::] (nth [::] (info_matrices pb) (p i)) j)).
+Proof.
+move=> + okp; have [sL pL] := posterior_pd G okp j; set L := posterior _ _ _ j in sL pL.
+have info_dot (W : dmat) i : val (mdot d W (nth [::] (nth [::] (info_matrices pb) (p i)) j)) = \tr ((mx F d W)^T *m info_of (p i) j).
+  by rewrite mx_dot nth_info ?element_lt.
+rewrite /gradient_at /target_value -/L; case e: (objective pb); case: t => [y|t v] //.
+- move=> [<-] /=; set Z := touching d _ _ _; set W := mscale d _ _.
+  pose Y : 'M[F]_(d, counted_rows j) := touch_mx F d (outputs pb) j Z.
+  have We : (mx F d W)^T = weight_of j *: (Y *m Y^T) by rewrite mx_scale mx_outer -/Y linearZ /= trmx_mul trmxK.
+  rewrite val_add mx_dot (eq_bigr (fun i => weight_of j * \tr (Y *m Y^T *m info_of (p i) j))); last first.
+    by move=> i _; rewrite info_dot We -scalemxAl linearZ.
+  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr val_mul val_sub val_mul trace_withP val_nat.
+  rewrite touching_traceP nth_prior // trace_squareP -/(prior_of j) -/Y -/(output_of j) -!mulrDr.
+  apply: ler_wpmul2l; first exact: weight_ge0.
+  have fen := trace_fenchel (output_of j) Y sL pL.
+  have sand A : \tr (Y^T *m A *m Y) = \tr (Y *m Y^T *m A) by rewrite mxtrace_mulC mulmxA.
+  have up : \tr (Y^T *m L *m Y) <= \tr (Y *m Y^T *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y *m Y^T *m info_of (p i) j).
+    rewrite sand /L /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /=.
+    rewrite -mulmxBr -sand; apply: psd_trace => x; have [_ ph] := highP j.
+    have := ph (Y *m x); rewrite /form trmx_mul !mulmxA //.
+  rewrite /counting -[X in _ <= X]addrA -addrA ler_add2l.
+  apply: le_trans (_ : - (2%:R * \tr (output_of j *m Y) - \tr (Y^T *m L *m Y)) <= _); first by rewrite ler_opp2.
+  by rewrite opprB addrC ler_add2l.
+- cbv zeta; case: ifP => // definite [<-] /=; set W := mscale d _ _; pose Y := mx F d (unpack d y).
+  have sY : symmetrical Y := unpack_symmetrical F d _; have pY : pd Y by apply/(is_pdP sY).
+  have We : (mx F d W)^T = weight_of j *: Y by rewrite mx_scale linearZ /= sY.
+  rewrite val_add mx_dot (eq_bigr (fun i => weight_of j * \tr (Y *m info_of (p i) j))); last first.
+    by move=> i _; rewrite info_dot We -scalemxAl linearZ.
+  have [sP pP] := prior_good j.
+  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr opprK val_mul val_sub val_nat nth_prior // -!mulrDr.
+  apply: ler_wpmul2l; first exact: weight_ge0.
+  have fen := logdet_fenchel (lnP e) sL pL sY pY.
+  have P0 : 0 < \det (prior_of j) := det_gt0 sP pP; have Y0 : 0 < \det Y := det_gt0 sY pY.
+  have := @log_quotient_upP F ln (lnP e) 110 400 (mdet d (unpack d (nth [::] (priors pb) j))) (mdet d (unpack d y)).
+  rewrite !mdetE -/(prior_of j) -/Y => /(_ P0 Y0); rewrite (lnM (lnP e)) ?invr_gt0 // (lnV (lnP e) Y0).
+  set q := val (log_quotient_up _ _ _ _) => lq.
+  have up : \tr (Y *m L) <= \tr (Y *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y *m info_of (p i) j).
+    rewrite /L /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /= -mulmxBr.
+    have [sH pH] := highP j; apply: trace_product_ge0 => //.
+    by rewrite /symmetrical linearB /= sH (symmetrical_inv sP).
+  exact: logdet_shape lq fen up.
+cbv zeta; set s := length_of _ _ _; set b := quotient_up _ _ _; case: ifP => // /andP[s0 bt] [<-] /=; set W := mkm _ _.
+pose V : 'cV[F]_d := \col_i val (nth d0 v i).
+pose U := output_of j *m V; have UU : dot U U = val s.
+  by rewrite /s (length_ofP F d) (squareP j) /U /dot /form trmx_mul !mulmxA.
+rewrite (val_lt F) val0 -UU in s0; rewrite (val_le F) !val_mul -UU in bt.
+have U0 : U != 0 by apply: contraTneq s0 => ->; rewrite /dot mulmx0 mxE ltxx.
+have mW : mx F d W = (weight_of j * val b) *: (V *m V^T).
+  by rewrite mx_mkm; apply/matrixP => i k; rewrite !mxE !val_mul big_ord1 !mxE.
+have one A : \tr ((mx F d W)^T *m A) = weight_of j * val b * form A V V.
+  rewrite mW linearZ /= trmx_mul trmxK -scalemxAl linearZ /=; congr (_ * _).
+  by rewrite mxtrace_mulC mulmxA mxtrace_mulC mulmxA /form /mxtrace big_ord1.
+rewrite val_add val_sub !val_mul val_nat mx_dot one (eq_bigr (fun i => weight_of j * val b * form (info_of (p i) j) V V)); last first.
+  by move=> i _; rewrite info_dot one.
+have w0 := weight_gt0 j; have b0 : 0 <= val b.
+  by rewrite -(pmulr_lge0 _ s0); apply: le_trans bt; rewrite -expr2 sqr_ge0.
+have fen := largest_eigenvalue_fenchel (lmaxP e (j:=j)) (val t) sL pL U0.
+have Lb : form L V V <= form (mx F d (nth [::] highs j)) V V + \sum_(i in G) form (info_of (p i) j) V V.
+  rewrite /L /posterior sum_contributed // formDm form_sum ler_add2r -subr_ge0 -formBm.
+  by have [_ h] := highP j; apply: h.
+have le1 : 2%:R * val t - val b * form L V V <= lmax (part_of (output_of j) (invmx L)).
+  apply: le_trans fen; rewrite ler_add2l ler_opp2 mulrA ler_pdivr_mulr // [X in _ <= X]mulrAC.
+  by apply: ler_wpmul2r; [apply: (pd_psd pL) | rewrite expr2].
+rewrite -!mulr_sumr.
+have le3 : weight_of j * (2%:R * val t) - weight_of j * val b *
+    (form (mx F d (nth [::] highs j)) V V + \sum_(i in G) form (info_of (p i) j) V V) <= weight_of j * lmax (part_of (output_of j) (invmx L)).
+  rewrite -mulrA -mulrBr; apply: ler_wpmul2l; first exact: ltW.
+  by apply: le_trans le1; rewrite ler_add2l ler_opp2; apply: ler_wpmul2l.
+have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
+by rewrite (tangent_shape (val (prior_high pr)) (weight_of j) (val t) (val b)) lexx.
+Qed.
+
 Lemma gradientP pt g : gradient (objective pb) d m ws (outputs pb) Ss (prior_matrices pb) highs (prior_high pr) pt = Some g ->
   size g.1 = m /\ forall p (G : {set robot}), is_plan (team_of w) p ->
   value (contributed p G) <= val g.2 + \sum_(i in G) val (dots d g.1 (nth [::] (info_matrices pb) (p i))).
 Proof.
-rewrite /gradient; case e: (objective pb); case: pt => [ys|j t v] //; case: ifP => // cond [<-] /=.
-  rewrite size_mkseq; split=> // p G okp; set Zs := mkseq _ m; set Ws := mkseq _ m.
-  have sW : size Ws = m by rewrite size_mkseq.
-  pose Z j := nth [::] Zs j.
-  pose Y (j : target) : 'M[F]_(d, counted_rows j) := touch_mx F d (outputs pb) j (Z j).
-  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: (Y j *m (Y j)^T).
-    have -> : nth [::] Ws j = mscale d (nth d0 ws j) (outer_product d (counted_rows j) (Z j)) by rewrite nth_mkseq.
-    by rewrite mx_scale mx_outer -/(Y j) linearZ /= trmx_mul trmxK.
-  rewrite val_add dotsE ?highs_size // val_sum_iota.
-  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m (Y j)^T *m info_of (p i) j))); last first.
+rewrite /gradient; case: pt => [ys|j t v]; case: ifP => // /andP[cond kind].
+  case eg: (all_some _) => [gs|//] [<-] /=; have [szg _] := all_some_nth 0%N ([::], d0) 0 eg; rewrite size_iota in szg.
+  have sW : size [seq h.1 | h <- gs] = m by rewrite size_map.
+  split=> // p G okp; rewrite value_sum; last by move=> e; move: kind; rewrite e.
+  rewrite val_sum big_map (big_nth ([::], d0)) szg big_mkord.
+  rewrite (eq_bigr (fun i => \sum_(j : target) val (mdot d (nth ([::], d0) gs j).1
+      (nth [::] (nth [::] (info_matrices pb) (p i)) j)))); last first.
     move=> i _; rewrite dots_info //; apply: eq_bigr => j _.
-    by rewrite We -scalemxAl linearZ.
-  rewrite [X in _ <= _ + X]exchange_big /= -!big_split /value e /trace_value /trace_base /trace_penalty -sumrB; apply: ler_sum => j _ /=.
-  have [sL pL] := posterior_pd G okp j.
-  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr val_mul val_sub val_mul trace_withP val_nat -/(Z j).
-  rewrite touching_traceP nth_prior // trace_squareP -/(prior_of j) -/(Y j) -/(output_of j) -!mulrDr.
-  apply: ler_wpmul2l; first exact: weight_ge0.
-  have fen := trace_fenchel (output_of j) (Y j) sL pL.
-  have sand A : \tr ((Y j)^T *m A *m Y j) = \tr (Y j *m (Y j)^T *m A) by rewrite mxtrace_mulC mulmxA.
-  have up : \tr ((Y j)^T *m posterior prior_of info_of (contributed p G) j *m Y j) <=
-      \tr (Y j *m (Y j)^T *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m (Y j)^T *m info_of (p i) j).
-    rewrite sand /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /=.
-    rewrite -mulmxBr -sand; apply: psd_trace => x; have [_ ph] := highP j.
-    have := ph (Y j *m x); rewrite /form trmx_mul !mulmxA //.
-  rewrite /counting -[X in _ <= X]addrA -addrA ler_add2l.
-  apply: le_trans (_ : - (2%:R * \tr (output_of j *m Y j) - \tr ((Y j)^T *m posterior prior_of info_of (contributed p G) j *m Y j)) <= _); first by rewrite ler_opp2.
-  by rewrite opprB addrC ler_add2l.
-  move/andP: cond => [/eqP sz /allP defs].
-  rewrite size_mkseq; split=> // p G okp; set Ws := mkseq _ m.
-  have sW : size Ws = m by rewrite size_mkseq.
-  pose Y (j : target) := mx F d (unpack d (nth [::] ys j)).
-  have Ys j : symmetrical (Y j) := unpack_symmetrical F d _.
-  have nY (j : target) : nth [::] [seq unpack d y | y <- ys] j = unpack d (nth [::] ys j) by rewrite (nth_map [::]) ?sz.
-  have pY j : pd (Y j) by apply/(is_pdP (Ys j)); apply: defs; apply: map_f; rewrite mem_nth ?sz.
-  have We (j : target) : (mx F d (nth [::] Ws j))^T = weight_of j *: Y j.
-    by rewrite nth_mkseq // mx_scale nY linearZ /= Ys.
-  rewrite val_add dotsE ?highs_size // val_sum_iota.
-  rewrite (eq_bigr (fun i => \sum_(j : target) weight_of j * \tr (Y j *m info_of (p i) j))); last first.
-    move=> i _; rewrite dots_info //; apply: eq_bigr => j _.
-    by rewrite We -scalemxAl linearZ.
-  rewrite [X in _ <= _ + X]exchange_big /= -!big_split /value e /logdet_value /logdet_base /logdet_penalty -sumrB.
-  apply: ler_sum => j _ /=; have [sL pL] := posterior_pd G okp j; have [sP pP] := prior_good j.
-  rewrite -!mulr_sumr We -scalemxAl linearZ /= -mulrBr opprK val_mul val_sub val_nat.
-  rewrite nth_prior // nY -!mulrDr; apply: ler_wpmul2l; first exact: weight_ge0.
-  have fen := logdet_fenchel (lnP e) sL pL (Ys j) (pY j).
-  have P0 : 0 < \det (prior_of j) := det_gt0 sP pP; have Y0 : 0 < \det (Y j) := det_gt0 (Ys j) (pY j).
-  have := @log_quotient_upP F ln (lnP e) 110 400 (mdet d (unpack d (nth [::] (priors pb) j))) (mdet d (unpack d (nth [::] ys j))).
-  rewrite !mdetE -/(prior_of j) -/(Y j) => /(_ P0 Y0); rewrite (lnM (lnP e)) ?invr_gt0 // (lnV (lnP e) Y0).
-  set q := val (log_quotient_up _ _ _ _) => lq.
-  have up : \tr (Y j *m posterior prior_of info_of (contributed p G) j) <=
-      \tr (Y j *m mx F d (nth [::] highs j)) + \sum_(i in G) \tr (Y j *m info_of (p i) j).
-    rewrite /posterior sum_contributed // mulmxDr linearD /= mulmx_sumr raddf_sum ler_add2r -subr_ge0 -linearB /= -mulmxBr.
-    have [sH pH] := highP j; apply: trace_product_ge0 => //.
-    by rewrite /symmetrical linearB /= sH (symmetrical_inv sP).
-  exact: logdet_shape lq fen up.
-move/and3P: cond => [jm s0 bt]; set s := length_of _ _ _ in s0 bt; set b := quotient_up _ _ _ in bt *.
-rewrite size_mkseq; split=> // p G okp; set W := mkm _ _; set Ws := mkseq _ m.
-have sW : size Ws = m by rewrite size_mkseq.
-pose jt : target := Ordinal jm; pose V : 'cV[F]_d := \col_i val (nth d0 v i).
-pose U := output_of jt *m V; have UU : dot U U = val s.
-  by rewrite /s (length_ofP F d) (squareP jt) /U /dot /form trmx_mul !mulmxA.
-rewrite (val_lt F) val0 -UU in s0; rewrite (val_le F) !val_mul -UU in bt.
-have U0 : U != 0 by apply: contraTneq s0 => ->; rewrite /dot mulmx0 mxE ltxx.
-have mW : mx F d W = (weight_of jt * val b) *: (V *m V^T).
-  by rewrite mx_mkm; apply/matrixP => i k; rewrite !mxE !val_mul big_ord1 !mxE.
-have one (A : target -> 'M[F]_d) : \sum_(k : target) \tr ((mx F d (nth [::] Ws k))^T *m A k) =
-    weight_of jt * val b * form (A jt) V V.
-  rewrite (bigD1 jt) //= big1 ?addr0 => [|k ne].
-    rewrite nth_mkseq // eqxx mW linearZ /= trmx_mul trmxK -scalemxAl linearZ /=; congr (_ * _).
-    by rewrite mxtrace_mulC mulmxA mxtrace_mulC mulmxA /form /mxtrace big_ord1.
-  by rewrite nth_mkseq // ifN ?mx_nil ?trmx0 ?mul0mx ?mxtrace0 //.
-rewrite val_add val_sub !val_mul val_nat dotsE ?highs_size // one.
-rewrite (eq_bigr (fun i => weight_of jt * val b * form (info_of (p i) jt) V V)); last first.
-  by move=> i _; rewrite dots_info // one.
-have [sL pL] := posterior_pd G okp jt; set L := posterior _ _ _ in sL pL.
-have w0 := weight_gt0 jt; have b0 : 0 <= val b.
-  by rewrite -(pmulr_lge0 _ s0); apply: le_trans bt; rewrite -expr2 sqr_ge0.
-have fen := largest_eigenvalue_fenchel (lmaxP e (j:=jt)) (val t) sL pL U0.
-have Lb : form (L jt) V V <= form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V.
-  rewrite /L /posterior sum_contributed // formDm form_sum ler_add2r -subr_ge0 -formBm.
-  by have [_ h] := highP jt; apply: h.
-have le1 : 2%:R * val t - val b * form (L jt) V V <= lmax (part_of (output_of jt) (invmx (L jt))).
-  apply: le_trans fen; rewrite ler_add2l ler_opp2 mulrA ler_pdivr_mulr // [X in _ <= X]mulrAC.
-  by apply: ler_wpmul2r; [apply: (pd_psd pL) | rewrite expr2].
-rewrite valueE -/L /penalty e -!mulr_sumr.
-have le2 : weight_of jt * lmax (part_of (output_of jt) (invmx (L jt))) <= maxeig_penalty weight_of output_of lmax L.
-  exact: (le_largest (fun k => weight_of k * lmax (counting output_of k (invmx (L k))))).
-have le3 : weight_of jt * (2%:R * val t) - weight_of jt * val b *
-    (form (mx F d (nth [::] highs jt)) V V + \sum_(i in G) form (info_of (p i) jt) V V) <= maxeig_penalty weight_of output_of lmax L.
-  apply: le_trans le2; rewrite -mulrA -mulrBr; apply: ler_wpmul2l; first exact: ltW.
-  by apply: le_trans le1; rewrite ler_add2l ler_opp2; apply: ler_wpmul2l.
-have := ler_sub (base_high e) le3; move=> h; apply: le_trans h _.
-by rewrite (tangent_shape (val (prior_high pr)) (weight_of jt) (val t) (val b)) lexx.
+    by rewrite (nth_map ([::], d0)) ?szg // mx_dot nth_info ?element_lt.
+  rewrite [X in _ <= _ + X]exchange_big -big_split /=; apply: ler_sum => j _.
+  by apply: (gradient_atP _ (all_some_iota ([::], d0) j eg) okp).
+case eg: (gradient_at _ _ _ _ _ _ _ _ _ _) => [h|//] [<-] /=; rewrite size_mkseq; split=> // p G okp.
+have e : objective pb = MaxEigenvalue by case: (objective pb) kind.
+pose jt : target := Ordinal cond; apply: le_trans (value_le_target jt _ e) _.
+apply: le_trans (gradient_atP (j:=jt) G eg okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+apply: eq_bigr => i _; rewrite dots_info ?size_mkseq // (bigD1 jt) //= big1 ?addr0 => [|k ne].
+  by rewrite nth_mkseq // eqxx mx_dot nth_info ?element_lt.
+by rewrite nth_mkseq // ifN ?mx_nil ?trmx0 ?mul0mx ?mxtrace0 //.
 Qed.
 
 (** ** Bounds by gains *)
@@ -608,25 +643,191 @@ apply: le_trans (bound p G okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; 
 by apply: eq_bigr => i _; rewrite (nth_map [::]) ?size_map ?infos_size ?element_lt.
 Qed.
 
-Theorem upper_sound p : check_upper_part pb cl pr highs defects -> is_plan (team_of w) p ->
+(** The scores of robots outside of a group are left out. *)
+Lemma masked_bound p grp (q : tangent) x : is_plan (team_of w) p -> size q.1 = size (owners w) ->
+  x <= val q.2 + \sum_(i in set_of w grp) val (nth d0 q.1 (p i)) ->
+  x <= val q.2 + \sum_(i : robot) val (nth d0 (masked (owners w) grp q.1) (p i)).
+Proof.
+move=> okp sz le; apply: le_trans le _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last by rewrite size_zip sz minnn element_lt.
+rewrite nth_zip //=; have -> : nth 0%N (owners w) (p i) = i.
+  have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
+  by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
+by case: ifP => // _; rewrite val0.
+Qed.
+
+(** ** Inequalities of single targets *)
+Section Inequalities.
+Variables (p : {ffun robot -> element}) (tangents : seq target_bound).
+Let ls := lemma_list (rows_part pr).
+Hypothesis okp : is_plan (team_of w) p.
+Hypothesis tangentsE : tangent_bounds (objective pb) d m ws (outputs pb) Ss (prior_matrices pb) highs (info_matrices pb)
+  (prior_high pr) (tangent_list (rows_part pr)) = Some tangents.
+Hypothesis lemmas_ok : all (fun l => (lemma_target l < m)%N && check_lemma w tangents l) ls.
+Let bounds := tangents ++ [seq lemma_bound l | l <- ls].
+
+Lemma listed_tangentP k (G : {set robot}) : (k < size tangents)%N -> exists2 j : target,
+  (inequality_of tangents k).1 = j & holds p G (inequality_of tangents k).2 (target_value j (contributed p G)).
+Proof.
+have [szt h] := all_some_nth (0%N, MatrixTouch [::]) (0%N, ([::], d0)) k tangentsE; rewrite szt => kl; move: (h kl); rewrite /inequality_of.
+case: ifP => // jm; case eg: (gradient_at _ _ _ _ _ _ _ _ _ _) => [g|//] [<-].
+exists (Ordinal jm) => //; split; first by rewrite /= size_map size_map infos_size.
+apply: le_trans (gradient_atP (j:=Ordinal jm) G eg okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+by apply: eq_bigr => i _ /=; rewrite (nth_map [::]) ?size_map ?infos_size ?element_lt.
+Qed.
+
+Lemma inequalityP k (G : {set robot}) : (k < size bounds)%N -> exists2 j : target,
+  (inequality_of bounds k).1 = j & holds p G (inequality_of bounds k).2 (target_value j (contributed p G)).
+Proof.
+rewrite /inequality_of nth_cat size_cat size_map; case: (ltnP k (size tangents)) => [kl _|ge]; first exact: listed_tangentP.
+rewrite -ltn_subLR // => kl; set l0 := ListedLemma 0 [::] d0 (LemmaLeaf 0).
+rewrite (nth_map l0) //; set l := nth l0 ls _; have /andP[jm good] := (all_nthP l0 lemmas_ok) _ kl.
+exists (Ordinal jm) => //; apply: (check_lemmaP net_good okp good) => k' k'l ek.
+by have [j ej] := listed_tangentP G k'l; rewrite (_ : j = Ordinal jm) //; apply: ord_inj; rewrite /= -ej ek.
+Qed.
+
+Lemma rowP ks (G : {set robot}) : row_ok (objective pb) m bounds ks ->
+  holds p G (row_sum w bounds ks) (value (contributed p G)).
+Proof.
+move=> /andP[/allP inr js].
+pose x k := if insub (inequality_of bounds k).1 is Some j then target_value j (contributed p G) else 0.
+have hx k : k \in ks -> holds p G (inequality_of bounds k).2 (x k).
+  move=> /inr kl; have [j ej] := inequalityP G kl; rewrite /x ej valK.
+  by [].
+have [sz le] := row_sumP hx; split=> //; apply: le_trans le.
+move: js; case e: (objective pb) => [||].
+- move=> /eqP js; rewrite value_sum ?e // le_eqVlt; apply/orP; left; apply/eqP.
+  rewrite -(big_map (fun k => (inequality_of bounds k).1) xpredT
+    (fun j => if insub j is Some j' then target_value j' (contributed p G) else 0)) js.
+  rewrite (_ : iota 0 m = index_iota 0 m); last by rewrite /index_iota subn0.
+  by rewrite big_mkord; apply: eq_bigr => j _; rewrite valK.
+- move=> /eqP js; rewrite value_sum ?e // le_eqVlt; apply/orP; left; apply/eqP.
+  rewrite -(big_map (fun k => (inequality_of bounds k).1) xpredT
+    (fun j => if insub j is Some j' then target_value j' (contributed p G) else 0)) js.
+  rewrite (_ : iota 0 m = index_iota 0 m); last by rewrite /index_iota subn0.
+  by rewrite big_mkord; apply: eq_bigr => j _; rewrite valK.
+case: ks inr hx {sz} => [//|k [|k' ks]] //= inr hx jm; rewrite big_seq1 /x insubT.
+exact: value_le_target.
+Qed.
+
+(** ** Values that plans can have *)
+Definition sees_target (G : {set robot}) (j : target) : bool := [exists i in G, seen pb j (p i)].
+
+Lemma unseen_value (G : {set robot}) j : objective pb = Trace -> ~~ sees_target G j -> target_value j (contributed p G) = 0.
+Proof.
+move=> e /existsPn none; rewrite /target_value e /posterior sum_contributed // big1 => [|i iG].
+  by rewrite addr0 invmxK subrr.
+have := none i; rewrite iG /= negbK => /allP zero; rewrite /info_of -nth_info ?element_lt //.
+apply/matrixP => a b; rewrite !mxE /get; set A := nth [::] (nth [::] _ _) j in zero *.
+have [al|ge] := ltnP a (size A); last by rewrite [nth [::] A a]nth_default // nth_nil val0.
+have /allP row := zero _ (mem_nth [::] al).
+have [bl|ge] := ltnP b (size (nth [::] A a)); last by rewrite nth_default // val0.
+exact: is_zeroP (row _ (mem_nth d0 bl)).
+Qed.
+
+Lemma worth_aloneP (G : {set robot}) (j : target) i x : objective pb = Trace -> i \in G ->
+  worth_alone pb lows defects j (p i) = Some x -> val x <= target_value j (contributed p G).
+Proof.
+move=> e iG; rewrite /worth_alone; set M := madd d _ _; case ey: (trace_inverse_up _ _ _ _) => [y|//] [<-].
+have mM : mx F d M = (mx F d (nth [::] lows j) - ((robots w).+1%:R * val (worst_defect pb defects j))%:M) + info_of (p i) j.
+  by rewrite mx_add mx_sub mx_scalar val_mul val_nat nth_info ?element_lt.
+have [sl pl] := lowP j; have sM : symmetrical (mx F d M).
+  by rewrite mM /symmetrical !linearD linearN /= tr_scalar_mx sl info_symmetrical.
+have [pM le] := trace_inverse_upP sM ey; have [sL pL] := posterior_pd G okp j.
+rewrite /target_value e val_mul val_sub -mulrBr; apply: ler_wpmul2l; first exact: weight_ge0.
+rewrite trace_withP trace_squareP nth_prior // -/(prior_of j) -/(output_of j); apply: ler_sub => //.
+apply: le_trans le; rewrite trace_squareP; apply: trace_inverse_antitone => //.
+set D := _ * _ in mM; rewrite mM /posterior sum_contributed // (big_setD1 i) //=.
+rewrite (rearrange3 _ _ _ _ _ (\sum_(k in G :\ i) (delta (p k) j)%:M)); apply: psdD => //.
+rewrite -big_split /=; apply: psdD; first by apply: psd_sum => k _; case: (deltaP (p k) j).
+rewrite scalar_sum -scalar_sub; apply: psd_scalar; rewrite subr_ge0; exact: worst_ge.
+Qed.
+
+Lemma spaced_value top (G : {set robot}) : enough_shown pb cl pr lows defects = Some top ->
+  value (contributed p G) <= val top -> value (contributed p G) <= val (upper cl).
+Proof.
+rewrite /enough_shown; case: (spacing _) => [[count ks]|]; last by move=> [<-].
+case e: (objective pb) => //; set pairs := flatten _; case ey: (all_some _) => [ys|//].
+set least := dopp _; set most := dmax _ _; case: ifP => // /andP[l0 /allP bounded] [<-]; case: ifP => // cm.
+rewrite val_max le_maxr => /orP[//|low]; set S := contributed p G in low *.
+rewrite (val_le F) val0 in l0; rewrite (val_le F) val_mul val_nat in cm.
+have most0 : 0 <= val most by rewrite val_max val0 le_maxr lexx.
+have seen_at j : sees_target G j -> exists2 i, i \in G & seen pb j (p i) by move=> /existsP[i /andP[iG se]]; exists i.
+have above j : sees_target G j -> val least <= target_value j S.
+  move=> /seen_at[i iG se]; have pin : ((j : nat), (p i : nat)) \in pairs.
+    apply/flattenP; exists [seq ((j : nat), e') | e' <- iota 0 (size (owners w)) & seen pb j e'].
+      by apply/mapP; exists (j : nat); rewrite // mem_iota add0n ltn_ord.
+    by apply/mapP; exists (p i : nat); rewrite // mem_filter se mem_iota add0n element_lt.
+  have [szy h] := all_some_nth (0%N, 0%N) d0 (index ((j : nat), (p i : nat)) pairs) ey.
+  have := h; rewrite index_mem => /(_ pin); rewrite nth_index //= => {h} h.
+  apply: le_trans (worth_aloneP e iG h); rewrite /least val_opp ler_oppl -val_opp.
+  by apply: (largest_ofP F (fun i => dopp (nth d0 ys i))); rewrite mem_iota add0n szy index_mem.
+have below_most j : sees_target G j -> target_value j S <= val most.
+  move=> /seen_at[i iG se]; have := bounded j; rewrite mem_iota add0n ltn_ord => /(_ isT)/implyP h.
+  have /h/hasP[k kin /and3P[kl /eqP tj /allP zeros]] : has (seen pb j) (iota 0 (size (owners w))).
+    by apply/hasP; exists (p i : nat); rewrite // mem_iota add0n element_lt.
+  have kb : (size tangents + k < size bounds)%N by rewrite /bounds size_cat size_map ltn_add2l.
+  have [j' ej' [_ le]] := inequalityP G kb.
+  have eb : inequality_of bounds (size tangents + k) = lemma_bound (lemma_at pr k).
+    rewrite /inequality_of nth_cat ifN ?addKn; last by rewrite -leqNgt leq_addr.
+    by rewrite (nth_map (ListedLemma 0 [::] d0 (LemmaLeaf 0))).
+  rewrite eb /= tj in ej'; have jj : j = j' by apply: ord_inj.
+  rewrite -jj eb /= big1 ?addr0 in le; last first.
+    move=> i' _; have [il|ge] := ltnP (p i') (size (lemma_scores (lemma_at pr k))); last by rewrite nth_default // val0.
+    exact: is_zeroP (zeros _ (mem_nth d0 il)).
+  apply: le_trans le _; rewrite val_max le_maxr; apply/orP; right.
+  exact: (largest_ofP F (fun k => lemma_constant (lemma_at pr k)) kin).
+pose n := #|[pred j | sees_target G j]|.
+have sumE : value S = \sum_(j | sees_target G j) target_value j S.
+  rewrite value_sum ?e // (bigID (sees_target G)) /= [X in _ + X]big1 ?addr0 // => j; exact: unseen_value.
+have lo : n%:R * val least <= value S.
+  rewrite sumE mulr_natl -sumr_const; apply: ler_sum => j; exact: above.
+have hi : value S <= n%:R * val most.
+  rewrite sumE mulr_natl -sumr_const; apply: ler_sum => j; exact: below_most.
+have nc : (n <= count)%N.
+  rewrite leqNgt; apply/negP => gt; have := le_trans lo low; rewrite val_sub val_mul val_nat leNgt => /negP[].
+  apply: lt_le_trans (_ : count.+1%:R * val least <= _); first by rewrite ltr_subl_addr ltr_addl val_tiny_gt0.
+  by apply: ler_wpmul2r; rewrite // ler_nat.
+apply: le_trans hi _; apply: le_trans cm; apply: ler_wpmul2r; by rewrite // ler_nat.
+Qed.
+End Inequalities.
+
+Theorem upper_sound p : check_upper_part pb cl pr lows highs defects -> is_plan (team_of w) p ->
   worst_case (team_of w) value p <= val (upper cl).
 Proof.
 rewrite /check_upper_part; set groups := [seq seeing_groups w a | a <- listed pr].
-case eg : (all_some _) => [gs|//]; set pts := [seq point_scores _ _ _ | _ <- gs]; set cuts := cut_bounds _ _ _ _.
-set covers := cover_bounds _ _ _ _ => /and5P[lok /allP range /allP cover_range u0 tree] okp.
+case eg : (all_some _) => [gs|//]; case et : (tangent_bounds _ _ _ _ _ _ _ _ _ _ _) => [tangents|//].
+case es : (enough_shown _ _ _ _ _) => [top|//].
+set pts := [seq point_scores _ _ _ | _ <- gs]; set bounds := tangents ++ _.
+set cuts := cut_bounds _ _ _ _; set rows := row_bounds _ _ _ _.
+set covers := cover_bounds _ _ _ _ => /and5P[lok /allP range /allP cover_range u0 /and3P[lemmas_ok /allP rows_ok tree]] okp.
 have at_ := tangentP okp eg; rewrite -/pts in at_.
-apply: (upper_treeP net_good value0 lok erefl _ okp _ _ _ _ tree u0) => [|k|k|k|a left g]; rewrite ?size_map; try move=> kl.
-- apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
-  by rewrite size_map size_zip (proj1 (at_ _ kl)) minnn.
-- rewrite /cut_of (nth_map (0%N, 0%N, 0%N)) //.
-  have := range _ (mem_nth (0%N, 0%N, 0%N) kl); case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=.
-  set grp := nth [::] (nth [::] groups a) g; have [sz bound] := at_ q ql.
-  apply: le_trans (bound (set_of w grp)) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
-  rewrite big_mkcond; apply: eq_bigr => i _; rewrite inE (nth_map (0%N, d0)); last by rewrite size_zip sz minnn element_lt.
-  rewrite nth_zip //=; have -> : nth 0%N (owners w) (p i) = i.
-    have := plan_owner i okp => /= /(congr1 (@nat_of_ord _)); rewrite /robot_of inordK //.
-    by case/and3P: net_good => _ /allP own _; apply: own; apply: mem_nth; apply: element_lt.
-  by case: ifP => // _; rewrite val0.
+suff shown : worst_case (team_of w) value p <= val top.
+  have [a oka ea] := worst_case_attained (team_of w) value p.
+  have [i ei] := team_value_attained (team_of w) value p a (ord0 : robot).
+  by rewrite ea ei in shown *; apply: (spaced_value okp et lemmas_ok es shown).
+have top_ok : val (upper cl) <= val top.
+  move: es; rewrite /enough_shown; case: (spacing _) => [[count ks]|]; last by move=> [<-].
+  case: (objective pb) => //; case: (all_some _) => [ys|//]; cbv zeta; case: ifP => // _ [<-]; case: ifP => // _.
+  by rewrite val_max le_maxr lexx.
+have t0 : dle d0 top by rewrite (val_le F); apply: le_trans top_ok; rewrite -(val_le F).
+apply: (upper_treeP net_good value0 lok erefl _ okp _ _ _ _ tree t0) => [|k|k|k|a left g]; rewrite ?size_map; try move=> kl.
+- rewrite all_cat; apply/andP; split.
+    apply/allP => c /mapP[[[a g] k] cin ->] /=; have /and3P[_ _ kl] := range _ cin.
+    by rewrite size_map size_zip (proj1 (at_ _ kl)) minnn.
+  apply/allP => c /mapP[[[a g] ks] rin ->] /=; have /and3P[_ _ okr] := rows_ok _ rin.
+  by have [/= sz _] := rowP okp et lemmas_ok set0 okr; rewrite size_map size_zip sz minnn.
+- rewrite /cut_of nth_cat; case: (ltnP k (size cuts)) => kc.
+    rewrite (nth_map (0%N, 0%N, 0%N)); last by rewrite size_map in kc.
+    have := range _ (mem_nth (0%N, 0%N, 0%N) _); rewrite size_map in kc; move=> /(_ _ kc).
+    case: (nth _ _ k) => [[a g] q] /and3P[al gl ql] /=; have [sz bound] := at_ q ql.
+    exact: masked_bound okp sz (bound _).
+  rewrite size_cat !size_map in kl; rewrite size_map in kc; have kr : (k - size (cut_list pr) < size (row_list (rows_part pr)))%N.
+    by rewrite ltn_subLR.
+  rewrite size_map (nth_map (0%N, 0%N, [::])) //; have := rows_ok _ (mem_nth (0%N, 0%N, [::]) kr).
+  case: (nth _ _ _) => [[a g] ks] /and3P[al gl okr] /=.
+  have [sz le] := rowP okp et lemmas_ok (set_of w (nth [::] (nth [::] groups a) g)) okr.
+  exact: masked_bound okp sz le.
 - by rewrite /cover_of (nth_map (0%N, [::], [::])) //; case: (nth _ _ k) => [[a out] ks] /=; rewrite size_map size_iota.
 - rewrite /cover_of (nth_map (0%N, [::], [::])) //.
   have := cover_range _ (mem_nth (0%N, [::], [::]) kl); case: (nth _ _ k) => [[a elements] ks].
@@ -635,7 +836,7 @@ apply: (upper_treeP net_good value0 lok erefl _ okp _ _ _ _ tree u0) => [|k|k|k|
   - by rewrite size_map size_iota.
   - by rewrite size_map sz /groups (nth_map ([::], [::])).
   by move=> t /mapP[q /ksl ql ->]; apply: at_.
-move: kl; case: ifP => // used; apply: gains_leafP => //; by move: used; rewrite /gains_are_used; case: (objective pb).
+move: kl; case: ifP => // used inl inc gl; apply: le_trans top_ok; apply: gains_leafP inl inc gl => //; by move: used; rewrite /gains_are_used; case: (objective pb).
 Qed.
 
 (** ** The plan's worst case *)
@@ -757,13 +958,6 @@ Qed.
 
 Section Lower.
 Let kind := objective pb.
-
-Lemma all_some_iota (U : Type) (f : nat -> option U) y0 r (j : target) :
-  all_some [seq f i | i <- iota 0 m] = Some r -> f j = Some (nth y0 r j).
-Proof.
-move=> h; have [_ h2] := all_some_nth 0%N y0 j h; rewrite size_iota in h2.
-by have := h2 (ltn_ord j); rewrite nth_iota // add0n.
-Qed.
 
 Lemma trace_upP p s y : trace_up d m ws Ss p s = Some y -> (forall j, symmetrical (fam s j)) ->
   good (fam s) /\ trace_penalty weight_of output_of (fam s) <= val y.
