@@ -89,6 +89,11 @@ class Agent:
         """Exchanges that its component took, as far as it knows."""
         return 0 if self._plan is None else self._plan.exchanges
 
+    def element_after(self, exchanges: int) -> int:
+        """Choice after a number of exchanges; the present one if it has heard of fewer."""
+        known = [] if self._plan is None else self._plan.own_after
+        return known[exchanges] if exchanges < len(known) else self.own.element
+
     @property
     def component(self) -> tuple[int, ...]:
         """Robots of its component, ascending; it alone if it does not know them yet."""
@@ -123,7 +128,9 @@ class Agent:
         if packet.version != self.version:
             self.refuse(packet.sender, "version of the messages", str(self.version), str(packet.version))
         elif packet.common != self.common:
-            self.refuse(packet.sender, "criterion, prior or budgets", self.common.hex(), packet.common.hex())
+            self.refuse(
+                packet.sender, "criterion, prior, budgets or way to plan", self.common.hex(), packet.common.hex()
+            )
         else:
             for item in channel.accept(packet):
                 self._handle(packet.sender, item)

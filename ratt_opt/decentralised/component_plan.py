@@ -45,7 +45,7 @@ class ComponentPlan:
 
     ``name`` : digest of view and ``alpha``; ``stamp`` : sum of the numbers of the link records that the robot knows;
     ``send`` : takes a robot and an item for it. ``bait`` : ``None`` until it is known. ``chosen`` : choices that it
-    heard of and its own, in their order; ``exchanges`` : taken so far.
+    heard of and its own, in their order; ``own_after`` : own element after RATT's plan and after each exchange.
     """
 
     def __init__(  # noqa: PLR0917
@@ -61,7 +61,7 @@ class ComponentPlan:
         self.robot, self.hops, self.params = own.knowledge.robot, own.knowledge.hops, own.knowledge.exchanges
         self.bait: tuple[int, ...] | None = None
         self.chosen: dict[int, Choice] = {}
-        self.exchanges = 0
+        self.own_after: list[int] = []
         self._stamp, self._send = stamp, send
         self._branches = view.branches(self.robot)
         self._children = sorted(set(self._branches.values()))
@@ -73,6 +73,11 @@ class ComponentPlan:
         self._near: tuple[int, ...] = ()
         self._open_below: Counter[int] = Counter()
         self._has_sent = self._has_closed = False
+
+    @property
+    def exchanges(self) -> int:
+        """Exchanges taken so far."""
+        return max(len(self.own_after) - 1, 0)
 
     @property
     def is_over(self) -> bool:
@@ -235,11 +240,11 @@ class ComponentPlan:
     def _take_award(self, award: Award) -> None:
         assert self.bait is not None
         if self._may_exchange:
-            self.exchanges += bool(award.choices)
             self._has_closed = not award.choices
             self.chosen |= {choice.robot: choice for choice in award.choices}
-            if self.robot in self.chosen:
-                self.own.element = self.chosen[self.robot].element
+            self.own.element = self.chosen[self.robot].element
+            if award.choices:
+                self.own_after.append(self.own.element)
         else:
             self._take_element(award.choices[0])
         self._bids.clear()
@@ -260,6 +265,7 @@ class ComponentPlan:
         if self.params is not None and self._all_awarded and choice.robot not in self.bait:
             self._count_open(self.bait)
         if self._may_exchange and self.params is not None:
+            self.own_after.append(self.own.element)
             self._count_open(self.view.members)
             self._near = (self.robot, *self.view.within(self.robot, self.params.reach))
             self._menus[self.robot] = self.own.menu()

@@ -39,7 +39,7 @@ class DecentralisedPlan(Plan):
     """A plan made by messages. Robots that crashed keep the element that they had.
 
     ``components`` : robots that planned together, ascending, by the lowest; a crashed robot alone
-    ``exchanges`` : taken by each component after RATT's plan
+    ``exchanges`` : after RATT's plan, by component; if planning was stopped, those that all of its robots had heard of
     ``heard`` : of each robot, the robots whose choices it knew when it chose, in the order of their choices; bait none
     ``rounds`` : longest chain of messages; ``messages``, ``bytes`` : sent until the last robot ended
     ``decision_time`` : until then, at the radios' bandwidth and delays [s]
@@ -150,9 +150,10 @@ def _planned(  # noqa: PLR0917
     simulation = Simulation(make_agents(problem, budget=budget, **way), (faults or Faults()).check(problem), seed)
     stop = simulation.run(budget)
     agents, costs, robots = simulation.agents, simulation.costs, range(problem.n_robots)
-    elements = readonly(np.array([agents[i].element for i in robots]))
     components = _network_left(problem, simulation)
-    exchanges = tuple(0 if group[0] in simulation.crashed else agents[group[0]].exchanges for group in components)
+    exchanges = tuple(min(agents[i].exchanges for i in group) for group in components)  # that all have heard of
+    after = {i: taken for group, taken in zip(components, exchanges, strict=True) for i in group}
+    elements = readonly(np.array([agents[i].element_after(after[i]) for i in robots]))
     is_ratts = not any(exchanges)
     cliques = _cliques({i: agents[i].own.heard for i in robots}, elements) if is_ratts else len(components)
     return DecentralisedPlan(

@@ -30,7 +30,7 @@ LOOK = 256
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Costs:
-    """Price of a plan, until the last robot has ended.
+    """Price of a plan, until the last robot has ended or planning was stopped.
 
     ``rounds`` : longest chain of messages; ``messages`` and ``bytes`` : packets sent, lost and repeated ones included;
     ``time`` : seconds of the radios.
@@ -85,6 +85,7 @@ class Simulation:
         while self._events:
             steps += 1
             if steps % LOOK == 0 and (stop := budget.stop()) is not None:
+                self._settle()
                 return stop
             self._now, _, event = heappop(self._events)
             robot = event()

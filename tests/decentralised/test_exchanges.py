@@ -1,11 +1,17 @@
 """Exchanges by messages never lower a component's worst case, and come near those with a centre."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 import ratt_opt as ro
 from analysis.decentralised.exchanges import compared, connected_cameras
 from ratt_opt import ExchangeParams, Problem, Stop, decentralised_ratt, decentralised_refined
+from ratt_opt.budget import Budget
+from ratt_opt.decentralised import simulator
+from ratt_opt.decentralised.component_plan import State
+from ratt_opt.decentralised.plan import make_agents
 from ratt_opt.decentralised.processes import plan_in_processes
 from tests.decentralised.teams import connected_graph, parts, radio_faults, team
 
@@ -66,6 +72,36 @@ def test_every_exchange_raises_the_worst_case_and_none_leaves_ratts_plan():
         assert sum(plan.exchanges) <= most
     assert values[0] == ro.worst_case_attack(problem, ro.ratt(problem).elements).lower
     assert values[0] < values[1] <= values[2]
+
+
+class Watcher(Budget):
+    """A budget that never ends and looks at the agents at every event."""
+
+    def __init__(self, look):
+        super().__init__()
+        self.look = look
+
+    def stop(self):
+        self.look()
+
+
+def test_at_any_time_the_last_exchange_that_all_have_heard_of_is_no_worse(monkeypatch):
+    monkeypatch.setattr(simulator, "LOOK", 1)
+    problem = cameras(np.random.default_rng(1), 3)
+    agents, seen = make_agents(problem, exchanges=ExchangeParams(kicks=0)), []
+
+    def look():
+        if all(agent.state in {State.PROPOSING, State.PROPOSED, State.ENDED} for agent in agents.values()):
+            taken = min(agent.exchanges for agent in agents.values())
+            elements = tuple(agents[i].element_after(taken) for i in range(6))
+            if not seen or seen[-1] != elements:
+                seen.append(elements)
+
+    simulator.Simulation(agents, ro.Faults(), 0).run(Watcher(look))
+    assert seen[0] == tuple(ro.ratt(problem).elements)
+    worst = [ro.worst_case_attack(problem, list(elements)) for elements in seen]
+    assert len(worst) > 1
+    assert all(after.lower > before.upper for before, after in pairwise(worst))
 
 
 @pytest.mark.slow

@@ -92,19 +92,22 @@ def test_a_robot_of_another_version_is_left_out_by_name():
     assert all(2 not in agent.component for i, agent in agents.items() if i != 2)
 
 
-@pytest.mark.parametrize("field", ["alpha_s", "prior"])
+@pytest.mark.parametrize("field", ["alpha_s", "prior", "hops", "exchanges"])
 def test_robots_with_other_data_are_left_out_by_their_digest(field):
     problem = team(np.random.default_rng(13), 5, objective="trace")
     known = make_agents(problem)[1].knowledge
-    if field == "alpha_s":
-        other = replace(known, alpha_s=problem.alpha_s + 1)
+    changed = {"alpha_s": problem.alpha_s + 1, "hops": 2, "exchanges": ro.ExchangeParams()}
+    if field in changed:
+        other = replace(known, **{field: changed[field]})
     else:
         f = known.objective
         other = replace(known, objective=type(f)(2 * f.prior, f.information))
     agents = run_with(problem, 1, Agent(other))
     told = [one for i, agent in agents.items() if i != 1 for one in agent.disagreements]
     assert told
-    assert all(one.about == "criterion, prior or budgets" and one.other == other.common.hex() for one in told)
+    assert all(
+        one.about == "criterion, prior, budgets or way to plan" and one.other == other.common.hex() for one in told
+    )
     assert all(agent.has_ended for agent in agents.values())
 
 
