@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
-from ratt_opt._rounding import up
+from ratt_opt._rounding import down, up
 from ratt_opt.certificates.lower_explanation import MOST_LINES, listing, spans
 from ratt_opt.certificates.verifier.exact_matrices import total
 from ratt_opt.certificates.verifier.upper import UpperCheck
@@ -29,6 +29,15 @@ TANGENTS = (
     "A tangent of a group's value under an attack is a constant and a score of each element; no plan's is larger."
 )
 
+ROWS = (
+    "A row adds up one inequality of each target: a tangent of what the target alone is worth, or a lemma, which a "
+    "tree of such tangents shows for every set of elements."
+)
+SPACING = (
+    "What sees n targets is worth n times {least} at least and n times {most} at most. So a plan that is worth less "
+    "than {next} is worth at most {value}."
+)
+
 
 def upper_story(about: Statement, part: Mapping[str, Any]) -> list[str]:
     """Say why every plan of each leaf is worth at most the claim under some attack; long trees are cut short."""
@@ -36,8 +45,11 @@ def upper_story(about: Statement, part: Mapping[str, Any]) -> list[str]:
     lines = ["Each leaf bounds its plans by attacks:"]
     lines += [f"Attack {k}: {text}" for k, text in enumerate(map(story.attack, part["attacks"], story.groups))]
     lines += [story.cover_line(k, given) for k, given in enumerate(part.get("covers", []))]
+    lines += [story.lemma_line(k, given) for k, given in enumerate(part.get("lemmas", []))]
     cut = [f"  ... and {len(part['tree']) - MOST_LINES:,} nodes more"] if len(part["tree"]) > MOST_LINES else []
     said = [TANGENTS] if part["cuts"] else []
+    said += [ROWS] if part.get("rows") else []
+    said += [story.spacing_line(part["spacing"]["count"])] if story.spacing is not None else []
     said += [COVERS.format(count=story.needed)] if story.covers else []
     return [*lines[: MOST_LINES + 1], *said, "", "Take any plan:", *story.lines, *cut]
 
@@ -47,7 +59,7 @@ class _Story(UpperCheck):
 
     def __init__(self, about: Statement, part: Mapping[str, Any]) -> None:
         self.lines: list[str] = []
-        self._waiting, self._reason = [(1, "")], ""
+        self._waiting, self._reason, self.first_row = [(1, "")], "", len(part["cuts"])
         super().__init__(about, part)
 
     @property
@@ -68,10 +80,28 @@ class _Story(UpperCheck):
         without = f"without elements {spans(given['left_out'])}"
         return f"Cover {number}: under attack {given['attack']} no group {without} is worth more than {bound}"
 
+    def lemma_line(self, number: int, given: Mapping[str, Any]) -> str:
+        """Tell what a lemma says of sets of elements, and what shows it."""
+        lemma = self.inequalities.lemmas[number]
+        scores = "".join(f" + {_number(score)} (element {e})" for e, score in lemma.scores.items())
+        leaves = sum(isinstance(node, int) for node in given["tree"])
+        cases = "one tangent" if leaves == 1 else f"{leaves} cases"
+        most = f"{_number(lemma.constant)}{scores}"
+        return f"Lemma {number}: no set is worth more for target {lemma.target} than {most}, by {cases}"
+
+    def spacing_line(self, count: int) -> str:
+        """Tell which values plans can have."""
+        assert self.spacing is not None
+        value, beyond = self.spacing.value, self.spacing.next_value
+        most = _number(value / count) if count else "0"
+        return SPACING.format(least=_down(beyond / (count + 1)), most=most, next=_down(beyond), value=_number(value))
+
     def expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
         """Note the node, and go on as the verifier does."""
         depth, answer = self._waiting.pop()
         below = list(super().expand(node, case))
+        if not below and self.spacing is not None and self.bounds[-1] is self.spacing.value:
+            self._reason += f"; so at most {_number(self.spacing.value)}, as values are spaced"
         if len(self.lines) < MOST_LINES:
             self.lines.append("  " * depth + answer + (self._question(node, case) if below else self._reason))
         self._waiting += [(depth + 1, f"{_answer(node, after)}: ") for after in reversed(below)]
@@ -89,13 +119,16 @@ class _Story(UpperCheck):
         bound = super().fenchel_leaf(node, left, winners)
         pairs = self.weighed(node, "fenchel", self.cuts)
         mass = total(w for w, _ in pairs)
-        parts = [("", total(w * cut.point.constant for w, cut in pairs) / mass)]
+        parts = [("", total(w * cut.bound.constant for w, cut in pairs) / mass)]
         for i, elements in enumerate(left):
-            scores = [(w, cut.point.scores) for w, cut in pairs if i in cut.group]
+            scores = [(w, cut.bound.scores) for w, cut in pairs if i in cut.group]
             if scores:
                 parts.append((f" (robot {i})", max(total(w * s[e] for w, s in scores) / mass for e in elements)))
         attacks = listing(dict.fromkeys(cut.attack for _, cut in pairs))
-        mean = "the tangent" if len(pairs) == 1 else f"the mean of {len(pairs)} tangents, weights {_weights(pairs)},"
+        assert isinstance(node, dict)
+        rows = sum(k >= self.first_row for k in node["fenchel"])
+        kind = "tangent" if not rows else "row" if rows == len(pairs) else "bound"
+        mean = f"the {kind}" if len(pairs) == 1 else f"the mean of {len(pairs)} {kind}s, weights {_weights(pairs)},"
         summed = " + ".join(f"{_number(value)}{of}" for of, value in parts)
         self._reason = f"at most {_number(bound)}, by {mean} of attack {attacks}: {summed}"
         return bound
@@ -138,6 +171,12 @@ def _answer(node: object, after: tuple[Left, Winners]) -> str:
 
 def _weights(pairs: Sequence[tuple[Any, Any]]) -> str:
     return ", ".join(_number(w) for w, _ in pairs)
+
+
+def _down(value: Any) -> str:
+    """A rational or the lower end of a ball, rounded down."""
+    exact = Fraction(int(value.p), int(value.q)) if isinstance(value, fmpq) else Fraction(float(value.lower()))
+    return down(exact, DIGITS) if exact else "0"
 
 
 def _number(value: Any) -> str:

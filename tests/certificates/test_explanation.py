@@ -24,6 +24,7 @@ from ratt_opt.certificates import lower_explanation, upper_explanation
 from ratt_opt.certificates.explanation import explained
 from ratt_opt.certificates.lower_explanation import LowerStory
 from ratt_opt.cli import run
+from tests.certificates import lemmas
 from tests.certificates.engine import ENUMERATED, drawn, proof, statement
 
 GUIDE = Path(__file__).parents[2] / "docs" / "guides" / "certificates.md"
@@ -117,3 +118,18 @@ def test_sums_of_tangents_are_their_bounds(row):
         bound, summed = re.search(r"at most ([\d.]+), by .*?: (.*)$", line).groups()
         parts = [float(part.split(" (")[0]) for part in summed.split(" + ")]
         assert sum(parts) == pytest.approx(float(bound), abs=1e-5)
+
+
+def test_rows_lemmas_and_spaced_values_are_told(tmp_path, capsys):
+    problem = lemmas.covering(np.random.default_rng(70), robots=2, targets=3)
+    lemmas.certified_by_rows(problem, lemmas.spaced(problem), tmp_path / "spaced.json")
+    assert run(["verify", str(tmp_path / "spaced.json"), "--explain"]) == 0
+    printed = capsys.readouterr().out
+    for words in (
+        "no set is worth more for target 0 than 0.999943, by one tangent",
+        "A row adds up one inequality of each target",
+        "So a plan that is worth less than 2.99943 is worth at most 1.99989",
+        "by the row of attack",
+        "so at most 1.99989, as values are spaced",
+    ):
+        assert words in printed

@@ -46,9 +46,9 @@ class Spacing:
         need(least >= 0, "upper proof: an element may be worth less than nothing, so values are not spaced")
         self.next_value = (count + 1) * least
 
-    def lowered(self, bounds: list[Any]) -> list[Any]:
-        """Lower the bounds of leaves that show enough; others stay."""
-        return [self.value if self.value < bound < self.next_value else bound for bound in bounds]
+    def lowered(self, bound: Any) -> Any:
+        """Lower the bound of a leaf that shows enough; others stay."""
+        return self.value if self.value < bound < self.next_value else bound
 
 
 def _alone(about: Statement, seers: dict[int, tuple[int, ...]]) -> Iterator[Any]:

@@ -97,15 +97,15 @@ class UpperCheck:
         reading.check_size("attacks", len(families) * about.n, reading.MOST_CELLS)
         self.groups = [self._groups_left(attack) for attack in families]
         self._points = read_points(about, points)
-        self._inequalities = TargetInequalities(about, tangents, lemmas, usual)
+        self.inequalities = TargetInequalities(about, tangents, lemmas, usual)
         self.cuts = [self._cut(cut) for cut in array("cuts", cuts)]
         self.cuts += [self._row(row) for row in array("rows", rows)]
         self.covers = [self._cover(cover) for cover in array("covers", covers)]
         self._marginals = cache(lambda: MarginalBounds(about))
         self._named: dict[int, list[tuple[int, ...]]] = {}
+        is_spaced = isinstance(part, dict) and "spacing" in part
+        self.spacing = Spacing(about, spacing, self.inequalities.lemmas) if is_spaced else None
         walk("upper", tree, (about.choices, {}), self.expand)
-        if isinstance(part, dict) and "spacing" in part:
-            self.bounds = Spacing(about, spacing, self._inequalities.lemmas).lowered(self.bounds)
 
     def expand(self, node: object, case: tuple[Left, Winners]) -> Iterator[tuple[Left, Winners]]:
         """Yield the cases below a branch; append a leaf's bound."""
@@ -120,7 +120,8 @@ class UpperCheck:
             yield from (((*left[:i], block, *left[i + 1 :]), winners) for block in blocks)
         else:
             leaves = {"covers": self.cover_leaf, "marginals": self.marginal_leaf, "fenchel": self.fenchel_leaf}
-            self.bounds.append(leaves[name](node, left, winners))
+            bound = leaves[name](node, left, winners)
+            self.bounds.append(bound if self.spacing is None else self.spacing.lowered(bound))
             if isinstance(self.bounds[-1], fmpq):
                 hold(self.bounds[-1])
 
@@ -224,7 +225,7 @@ class UpperCheck:
 
     def _row(self, given: object) -> _Cut:
         a, g, inequalities = array("row", given, 3)
-        return self._of_group("row", a, g, self._inequalities.row(inequalities))
+        return self._of_group("row", a, g, self.inequalities.row(inequalities))
 
     def _of_group(self, where: str, attack: object, group: object, bound: Bound) -> _Cut:
         a = self._number(f"{where} attack", attack)
