@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attack.stages.all_sets import ThresholdsOfFewStage, ThresholdsStage
 from ratt_opt.attack.stages.annealed_values import AnnealedOwnCriterionStage, AnnealedValuesStage
+from ratt_opt.attack.stages.blinded_robots import BlindedRobotsStage, FewBlindedRobotsStage
 from ratt_opt.attack.stages.branch_and_bound import (
     BranchAndBoundLaterStage,
     BranchAndBoundOfOwnCriterionStage,
@@ -38,6 +39,8 @@ __all__ = ["CRITERION_STAGES", "VALUE_STAGES"]
 VALUE_STAGES: tuple[Stage[AttackState], ...] = (
     CountedRobotsStage(),
     SingleValuesStage(),
+    BlindedRobotsStage(),
+    FewBlindedRobotsStage(),
     EveryValuedAttackStage(),
     ExchangesStage(),
     AnnealedValuesStage(),

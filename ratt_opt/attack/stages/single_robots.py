@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.bounds import first_bound, forced_survivors, strongest_left
+from ratt_opt.attack.plan_parts import refuse_larger_gain
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Stage
 from ratt_opt.setfunctions.metered import unmetered
@@ -63,4 +64,16 @@ def bound_by_values(task: AttackTask) -> None:
     if f.is_submodular:
         everyone = range(values.n)
         top = values(everyone) - values.evaluate(~np.eye(values.n, dtype=np.bool_))
-        task.bracket.raise_lower(nothing + float(np.sort(np.maximum(top, 0.0))[:size].sum()))
+        least = nothing + float(np.sort(np.maximum(top, 0.0))[:size].sum())
+        if least > task.bracket.upper + f.least_improvement(least, terms=values.n):
+            _refuse(task)
+        task.bracket.raise_lower(least)
+
+
+def _refuse(task: AttackTask) -> None:
+    """Show which element adds more to all others than to some that an attack leaves."""
+    f, plan = unmetered(task.problem.objective), task.values.plan
+    for group in task.problem.groups_left(task.bracket.attack):
+        own = plan[sorted(group)]
+        for k, element in enumerate(own.tolist()):
+            refuse_larger_gain(f, plan[plan != element], own[:k], element)

@@ -1,0 +1,53 @@
+"""Stage: robots blinded, on submodular functions."""
+
+from __future__ import annotations
+
+from math import comb
+from typing import TYPE_CHECKING
+
+from ratt_opt.attack.blinding_tree import BlindingTree
+from ratt_opt.attack.stages.attack_state import AttackState
+from ratt_opt.attack.staging import Share, Stage, go_on
+from ratt_opt.setfunctions.metered import unmetered
+
+if TYPE_CHECKING:
+    from ratt_opt.attack.params import AttackParams
+    from ratt_opt.budget import Stop
+
+__all__ = ["BlindedRobotsStage", "FewBlindedRobotsStage"]
+
+
+class BlindedRobotsStage(Stage[AttackState]):
+    """Stage that bounds sets of sensing robots by sums of diminishing gains."""
+
+    name = "blinded robots"
+
+    def applies(self, attack: AttackState) -> bool:
+        """Function says it is submodular, one group, no links to cut, more than 20,000 sets of robots; a limit."""
+        return attack.is_limited and _is_one_submodular_group(attack)
+
+    def run(self, attack: AttackState) -> Stop:
+        """Branch and bound over sets of blinded robots, by modular minorants."""
+        attack.task.budget.check()
+        return go_on(attack.task, BlindingTree(attack.task))
+
+
+class FewBlindedRobotsStage(BlindedRobotsStage):
+    """Stage that ends soon if nothing is limited."""
+
+    def applies(self, attack: AttackState) -> bool:
+        """The same without a limit, no other search asks."""
+        return not (attack.is_limited or attack.is_inner) and _is_one_submodular_group(attack)
+
+    def share(self, params: AttackParams) -> Share:
+        """Return a number of nodes that takes some seconds."""
+        return Share(part=1.0, max_nodes=params.stages.blinded_nodes)
+
+
+def _is_one_submodular_group(attack: AttackState) -> bool:
+    problem = attack.task.problem
+    one_group = problem.threat.n_cut == 0 and len(problem.communication.groups()) == 1
+    if not (one_group and unmetered(problem.objective).is_submodular):
+        return False
+    free = problem.n_robots - len(problem.threat.protected_robots)
+    return comb(free, problem.threat.n_blinded) > attack.task.params.stages.blinded_sets
