@@ -1,6 +1,6 @@
 """Plans against rivals, on families of instances that others published: processor seconds, one run, one row a seed.
 
-Run as ``python -m analysis.benchmarks.rivals [--only WORD] [--seconds S] [--seeds K] [--orlib FOLDER]``. Rivals are
+Run as ``python -m analysis.benchmarks.rivals [--only WORD] [--seconds S] [--seeds K] [--first SEED]``. Rivals are
 HiGHS's scenario program (``scenario_program`` of ``ratt_opt.planners``; its bound is a claim) and the greedy plan with
 exchanges. ``open`` is ``(upper - lower) / upper``; of the p-median rows all ends are costs, and ``open`` is a share of
 the cost of the plan.
@@ -8,6 +8,8 @@ the cost of the plan.
 - Resilient coverage (Shi, Zhou, Tokekar and others 2021): R robots, each of P paths covers 5 to 15 of T targets, A
   robots are lost.
 - p-median (OR-Library, Beasley 1990): choose p of n sites, A of them are lost.
+- Cameras: teams of ``limited_view.py`` on complete and disk networks, log-det and trace, against ``tangent_milp.py``
+  and greedy with exchanges by exact attacks; ``seconds`` of 50 cameras count double.
 """
 
 from __future__ import annotations
@@ -28,6 +30,8 @@ from scipy.sparse.csgraph import shortest_path  # noqa: E402
 
 import ratt_opt as ro  # noqa: E402
 from analysis.benchmarks.exchanges import RivalBracket, exchanges  # noqa: E402
+from analysis.benchmarks.limited_view import team  # noqa: E402
+from analysis.benchmarks.tangent_milp import attacked_exchanges, tangent_milp  # noqa: E402
 from ratt_opt.planners import scenario_program  # noqa: E402
 
 if TYPE_CHECKING:
@@ -47,20 +51,26 @@ class Case:
     """One instance: ``asked`` of the library, and the same as a sum of best elements, which the rivals take.
 
     ``rivals`` : ``None`` if there is no such form
+    ``cameras`` : whether the rivals are those of criteria
     ``most`` : shown is ``most`` less the value, if it is not ``None``: a cost
     """
 
     asked: ro.Problem
     rivals: ro.Problem | None = None
     most: float | None = None
+    cameras: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """Instances of one name and size; ``draw`` makes that of a seed, or ``None`` if there is none."""
+    """Instances of one name and size; ``draw`` makes that of a seed, or ``None`` if there is none.
+
+    ``longer`` : factor of the seconds
+    """
 
     name: str
     draw: Callable[[int], Case | None]
+    longer: float = 1.0
 
 
 def coverage(robots: int, paths: int, targets: int, lost: int) -> Family:
@@ -110,10 +120,22 @@ def read_p_median(path: Path) -> tuple[FloatArray, int]:
     return np.asarray(shortest_path(lengths, method="D")), facilities
 
 
+def cameras(robots: int, network: str, objective: str, longer: float = 1.0) -> Family:
+    """Cameras that must choose what to look at."""
+
+    def draw(seed: int) -> Case:
+        problem = team(robots, robots, network, seed).problem(objective)
+        return Case(asked=problem, rivals=problem, cameras=True)
+
+    return Family(name=f"{robots} cameras, {objective}, {network}", draw=draw, longer=longer)
+
+
 FAMILIES: tuple[Family, ...] = (
     coverage(10, 7, 100, 3),
     coverage(15, 7, 150, 6),
     *(p_median(number, lost) for lost in (0, 1, 2) for number in (1, 2, 3, 4, 6)),
+    *(cameras(robots, n, o) for robots in (10, 20) for o in ("logdet", "trace") for n in ("complete", "disk")),
+    *(cameras(50, n, o, longer=2.0) for o in ("logdet", "trace") for n in ("complete", "disk")),
 )
 
 
@@ -122,15 +144,22 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="families whose name holds this word")
     parser.add_argument("--seconds", type=float, default=60.0, help="processor seconds of each search and rival")
-    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--seeds", type=int, default=10, help="seeds of each family")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--without-rivals", action="store_true")
     options = parser.parse_args(arguments)
-    print(f"{'instance':24} {'seed':>4} {'':>10} {'lower':>12} {'upper':>12} {'open':>8} {'seconds':>8}")
+    seeds = range(options.first, options.first + options.seeds)
+    print(f"{'instance':28} {'seed':>4} {'':>10} {'lower':>12} {'upper':>12} {'open':>8} {'seconds':>8}")
     for family in FAMILIES:
-        for seed in range(options.seeds) if options.only in family.name else ():
+        for seed in seeds if options.only in family.name else ():
             case = family.draw(seed)
             if case is not None:
-                compare(f"{family.name:24} {seed:4}", case, options.seconds, rivals=not options.without_rivals)
+                compare(
+                    f"{family.name:28} {seed:4}",
+                    case,
+                    family.longer * options.seconds,
+                    rivals=not options.without_rivals,
+                )
 
 
 def compare(label: str, case: Case, seconds: float, *, rivals: bool) -> None:
@@ -140,10 +169,12 @@ def compare(label: str, case: Case, seconds: float, *, rivals: bool) -> None:
     show(label, "solve", RivalBracket(lower=found.lower, upper=found.upper, seconds=_since(began)), case.most)
     if case.rivals is not None and rivals:
         began = time.process_time()
-        walked = exchanges(case.rivals, ro.greedy(case.rivals), seconds)
+        walk = attacked_exchanges if case.cameras else exchanges
+        walked = walk(case.rivals, ro.greedy(case.rivals), seconds)
         walked = RivalBracket(lower=walked.lower, upper=np.inf, seconds=_since(began))
         show(label, "exchanges", walked, case.most)
-        show(label, "HiGHS", scenario_bracket(case.rivals, seconds), case.most)
+        program = tangent_milp if case.cameras else scenario_bracket
+        show(label, "HiGHS", program(case.rivals, seconds), case.most)
 
 
 def scenario_bracket(problem: ro.Problem, seconds: float) -> RivalBracket:

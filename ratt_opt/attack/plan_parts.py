@@ -35,7 +35,7 @@ class PlanPart:
         self._n, self._evaluate = n_robots, evaluate
         self._table: FloatArray | None = None
         self.most = float(np.ptp(self._values(np.array([np.zeros(len(robots)), np.ones(len(robots))]) > 0)))
-        """What all robots together add to nothing."""
+        """Value of all robots beyond that of none."""
 
     def gains(self, order: IntArray) -> FloatArray:
         """(N,) what each robot adds to those before it in an order (N,)."""
@@ -49,7 +49,7 @@ class PlanPart:
         return gains
 
     def value(self, senses: BoolArray) -> float:
-        """What the sensing robots (N,) add to nothing."""
+        """Value of the sensing robots (N,) beyond that of none."""
         return float(np.diff(self._values(np.array([np.zeros(len(self.robots)), senses[self.robots]]) > 0))[0])
 
     def _values(self, sets: BoolArray) -> FloatArray:
@@ -85,10 +85,21 @@ def parts_of_plan(values: PlanValues, f: SetFunction) -> list[PlanPart]:
 def refuse_larger_gain(f: SetFunction, more: IntArray, fewer: IntArray, element: int) -> None:
     """Refuse a function that says it is submodular if an element adds more to more elements than to fewer of these.
 
-    Raises ``InputError`` with the sets.
+    Raises ``InputError`` with the sets, from which all elements are left out without which that is still so.
     """
-    larger, smaller = (f([*base.tolist(), element]) - f(base.tolist()) for base in (more, fewer))
-    if larger > smaller + f.least_improvement(abs(larger) + abs(smaller), terms=4):
-        a, b = more.tolist(), [*fewer.tolist(), element]
-        shown = f"f(A) + f(B) - f(A | B) - f(A & B) = {smaller - larger:.6g} for A = {a}, B = {b}"
-        raise InputError("f", "must be submodular, as it says (is_submodular = True)", shown)
+    larger, smaller = set(more.tolist()), set(fewer.tolist())
+    if _excess(f, larger, smaller, element) <= 0:
+        return
+    for one in more.tolist():
+        if _excess(f, larger - {one}, smaller - {one}, element) > 0:
+            larger, smaller = larger - {one}, smaller - {one}
+    a, b, slack = sorted(larger), sorted({*smaller, element}), -_excess(f, larger, smaller, element)
+    shown = f"f(A) + f(B) - f(A | B) - f(A & B) = {slack:.6g} for A = {a}, B = {b}"
+    raise InputError("f", "must be submodular, as it says (is_submodular = True)", shown)
+
+
+def _excess(f: SetFunction, more: set[int], fewer: set[int], element: int) -> float:
+    """Excess of what an element adds to the larger set, if it is no rounding; else 0."""
+    larger, smaller = (f([*base, element]) - f(base) for base in (more, fewer))
+    least = f.least_improvement(abs(larger) + abs(smaller), terms=4)
+    return larger - smaller if larger > smaller + least else 0.0

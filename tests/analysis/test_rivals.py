@@ -30,6 +30,19 @@ def test_rivals_are_right_on_a_small_instance(rivals, lost):
     assert ro.solve_maxmin(case.asked).lower == pytest.approx(best, rel=1e-5)
 
 
+@pytest.mark.parametrize("network", ["complete", "disk"])
+def test_rivals_of_cameras_are_right_on_a_small_team(rivals, network):
+    near = {"complete": None, "disk": 45}[network]
+    drawn = ro.limited_view_scenario(4, 4, alpha_s=1, alpha_c=1, seed=1, headings=3, communication_range=near)
+    problem = drawn.problem("logdet")
+    best = ro.exhaustive_optimum(problem).lower
+    program = rivals.tangent_milp(problem, 20)
+    walked = rivals.attacked_exchanges(problem, ro.greedy(problem), 20)
+    assert program.lower == pytest.approx(best, rel=2e-4)
+    assert program.upper == pytest.approx(best, rel=2e-4)
+    assert walked.lower <= best * (1 + 1e-9)
+
+
 def test_one_list_names_every_family_once(rivals):
     names = [family.name for family in rivals.FAMILIES]
     assert len(set(names)) == len(names)

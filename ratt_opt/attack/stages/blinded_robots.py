@@ -36,7 +36,7 @@ class FewBlindedRobotsStage(BlindedRobotsStage):
     """Stage that ends soon if nothing is limited."""
 
     def applies(self, attack: AttackState) -> bool:
-        """The same without a limit, no other search asks."""
+        """Such a function and such sets; no limit, no other search asks."""
         return not (attack.is_limited or attack.is_inner) and _is_one_submodular_group(attack)
 
     def share(self, params: AttackParams) -> Share:
