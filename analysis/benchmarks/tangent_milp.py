@@ -1,8 +1,8 @@
 """HiGHS's program with attacks added as they are found, for criteria that are sums over targets.
 
-As ``scenario_program`` of ``ratt_opt.planners``, but a target's value is bounded by tangents: at first at the even mixture of all elements,
-then at each plan that HiGHS returns. If an attack leaves several groups, a binary variable says which of them wins.
-Plans are attacked by the library's exact attack. HiGHS's bound is its claim: nothing checks it.
+As ``scenario_program`` of ``ratt_opt.planners``, but a target's value is bounded by tangents: first at the even
+mixture of all elements, then at each plan that HiGHS returns. If an attack leaves several groups, a binary variable
+says which of them wins. The library attacks the plans exactly. HiGHS's bound is its claim: nothing checks it.
 """
 
 from __future__ import annotations
