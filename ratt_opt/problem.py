@@ -22,7 +22,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
@@ -173,15 +173,7 @@ class Problem:
         ------
         InputError : a robot has none.
         """
-        f = unmetered(self.objective)
-        nothing = np.asarray(f.singletons() == 0.0)
-        if isinstance(f, InformationObjective):
-            nothing = ~np.any(f.information, axis=(1, 2, 3))
-        without = [choice[nothing[choice]].tolist() for choice in self.choices]
-        if [] in without:
-            rule = "needs an idle element of every robot, worth 0 alone"
-            raise InputError("at_most", rule, f"none of robot {without.index([])}")
-        return readonly(np.array([elements[0] for elements in without]))
+        return idle_elements(self.objective, self.choices)
 
     @cached_property
     def choice_limit(self) -> ChoiceLimit | None:
@@ -322,6 +314,24 @@ class Problem:
     def groups_left(self, attack: Attack) -> list[frozenset[int]]:
         """Non-blinded robots of every group, by the group's lowest robot; empty if all of one are blinded."""
         return [group - attack.sensing for group in self.communication.groups(attack.links)]
+
+
+def idle_elements(objective: SetFunction, choices: Sequence[IntArray]) -> IntArray:
+    """(N,) the first element of each robot without information, or that is worth nothing alone.
+
+    Raises
+    ------
+    InputError : a robot has none.
+    """
+    f = unmetered(objective)
+    nothing = np.asarray(f.singletons() == 0.0)
+    if isinstance(f, InformationObjective):
+        nothing = ~np.any(f.information, axis=(1, 2, 3))
+    without = [choice[nothing[choice]].tolist() for choice in choices]
+    if [] in without:
+        rule = "needs an idle element of every robot, worth 0 alone"
+        raise InputError("at_most", rule, f"none of robot {without.index([])}")
+    return readonly(np.array([elements[0] for elements in without]))
 
 
 def check_problem(problem: Problem, *, knows_at_most: bool = False) -> Problem:

@@ -25,7 +25,8 @@ from ratt_opt.attack.task import (
 )
 from ratt_opt.attack.thresholds.all_sets import can_enumerate_subsets
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.problem import Attack
+from ratt_opt.coordinates.preparation import prepared
+from ratt_opt.problem import Attack, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.metered import unmetered
@@ -111,22 +112,22 @@ def worst_case_attack(
         params=parameters.DEFAULT if params is None else params,
         brief=brief,
     )
-    found = worst_case_attack_unrounded(problem, elements, options)
-    return widened_result(options.memory.searched_of(problem), problem.check_plan(elements), found)
+    searched = prepared(check_problem(problem, knows_at_most=True))
+    found = worst_case_attack_unrounded(searched, elements, options)
+    return widened_result(searched, searched.check_plan(elements), found)
 
 
 def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: AttackOptions) -> AttackResult:
-    """:func:`worst_case_attack` for other searches: both ends as they were computed."""
+    """:func:`worst_case_attack` for other searches, of a prepared problem: both ends as they were computed."""
     own, memory = options.own_budget(), options.memory
     values = PlanValues(problem, elements)
     memory.check(problem, values.plan)
-    searched = memory.searched_of(problem)
-    is_metered = not isinstance(searched.objective, InformationObjective)
-    asked = metered_problem(searched, own) if is_metered else searched
+    is_metered = not isinstance(problem.objective, InformationObjective)
+    asked = metered_problem(problem, own) if is_metered else problem
     values.objective = asked.objective
     records: list[StageRecord] = []
     try:
-        _begin(memory, searched, asked, values, options)
+        _begin(memory, problem, asked, values, options)
         assert memory.bracket is not None
         task = AttackTask(asked, values, memory.bracket, own, memory, records, options.params)
         stop = _search(task, is_inner=options.brief)
@@ -136,7 +137,7 @@ def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: 
         stop = Stop.GAP
     except KeyboardInterrupt:
         stop = own.interrupt()
-    bracket = memory.bracket or _unattacked(searched, values.plan)
+    bracket = memory.bracket or _unattacked(problem, values.plan)
     if memory.bracket is not None and bracket.is_closed and stop in UNDONE:
         stop = Stop.CLOSED  # by what was known before the budget ended
     return AttackResult(
@@ -150,20 +151,20 @@ def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: 
     )
 
 
-def _begin(memory: AttackMemory, searched: Problem, asked: Problem, values: PlanValues, options: AttackOptions) -> None:
+def _begin(memory: AttackMemory, problem: Problem, asked: Problem, values: PlanValues, options: AttackOptions) -> None:
     """Give the memory a bracket by a first attack, unless it has one; offer the known attack.
 
     Raises ``CutoffReached`` : the attack in hand is what was aimed at.
     """
     if memory.bracket is None:
         first = bounded_rational_attack(asked, values.plan)
-        is_exact = searched.evaluation_error == 0.0  # then the end was not moved
+        is_exact = problem.evaluation_error == 0.0  # then the end was not moved
         upper = first.upper if is_exact else asked.team_value(values.plan, first.attack)
-        memory.bracket = AttackBracket(first.attack, upper, first.lower, searched.objective.rounding)
+        memory.bracket = AttackBracket(first.attack, upper, first.lower, problem.objective.rounding)
         values.evaluations = first.evaluations
     memory.bracket.aim = options.aim
     if options.known is not None:
-        value = asked.team_value(values.plan, searched.check_attack(options.known))
+        value = asked.team_value(values.plan, problem.check_attack(options.known))
         memory.bracket.offer(options.known, value)
     memory.bracket.check_aim()
 

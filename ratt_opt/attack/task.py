@@ -14,7 +14,6 @@ from ratt_opt._values import ReprMixin, counted, plain
 from ratt_opt.attack import params as parameters
 from ratt_opt.attack.params import AttackParams
 from ratt_opt.budget import Budget
-from ratt_opt.coordinates.unit_prior import with_unit_prior
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
@@ -205,22 +204,15 @@ class Resumable(Protocol):
 class AttackMemory:
     """Resumable state of the attack on one plan of one problem.
 
-    ``searched`` : the problem in other coordinates, or itself
+    ``problem`` : in the coordinates in which it is searched
     ``search`` : the last stage of an attack, once it was reached; ``seconds`` : that the stages before had shares of
     """
 
     problem: Problem | None = None
-    searched: Problem | None = None
     plan: IntArray | None = None
     bracket: AttackBracket | None = None
     search: Resumable | None = None
     seconds: float = 0.0
-
-    def searched_of(self, problem: Problem) -> Problem:
-        """The problem in the coordinates in which it is searched."""
-        if self.searched is None:
-            self.searched = with_unit_prior(problem)
-        return self.searched
 
     def check(self, problem: Problem, plan: IntArray) -> None:
         """Raise ``InputError`` if this is about another problem or plan."""

@@ -11,9 +11,9 @@ If every information matrix of a target is ``U X U'`` with one basis ``U`` (d, r
   largest eigenvalue of other parts depends on the rest: such problems stay as they are.
 
 **Rounding.** The rest of the information, beside ``U X U'`` has, in units of the prior, at most the size ``SLACK``
-over a whole plan, or rounds off with its sums. ``(1 + S)^{-1} - (1 + S')^{-1}`` is at most ``|S - S'|``, so no value
-moves by more than that share of the prior's criterion (log-det: of d and the weights). Otherwise the problem stays
-as it is.
+over a whole plan, or rounds off with its sums; if ``U`` selects coordinates, there is none, and ``Q`` and ``X`` are
+exact. ``(1 + S)^{-1} - (1 + S')^{-1}`` is at most ``|S - S'|``, so no value moves by more than that share of the
+prior's criterion (log-det: of d and the weights). Otherwise the problem stays as it is.
 
 **Proofs.** A tangent at ``L`` of the smaller problem is the one at ``P^{-1} + U (L - Q^{-1}) U'`` of the other one. So
 certificates are written and verified in all coordinates, and rely on nothing here.
@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.coordinates.changed import ChangedProblem, change_error, product_error, sizes_of
+from ratt_opt.coordinates.changed import ChangedProblem, change_error, keeps_digits, product_error, selects, sizes_of
 from ratt_opt.problem import check_problem
 from ratt_opt.setfunctions.checked_matrices import positive_parts
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
@@ -72,10 +72,21 @@ def measured_coordinates(problem: Problem) -> ChangedProblem:
     """
     objective = check_problem(problem, knows_at_most=True).information_objective
     measured = _measured(problem)
-    change = None if measured is None else _change(objective, measured)
-    if change is None:
+    made = None if measured is None else _made(problem, measured)
+    if measured is not None and selects(measured.turned) and (made is None or not keeps_digits(made, objective)):
+        ways = made, _made(problem, measured, as_output=True)
+        made = min((way for way in ways if way), key=lambda way: way.evaluation_error, default=None)
+    if made is None:
         identity = np.broadcast_to(np.eye(objective.dimension), objective.prior.shape)
         return ChangedProblem.of(problem, objective, identity)
+    return made
+
+
+def _made(problem: Problem, measured: _Coordinates, *, as_output: bool = False) -> ChangedProblem | None:
+    """The problem in the measured coordinates; ``as_output`` : of the criterion, even if they could be mapped to it."""
+    change = _change(problem.information_objective, measured, as_output=as_output)
+    if change is None:
+        return None
     smaller, coordinates, outputs = change
     return ChangedProblem.of(problem, smaller, coordinates.basis, _error(problem, smaller, coordinates, outputs))
 
@@ -109,6 +120,10 @@ def _measured(problem: Problem) -> _Coordinates | None:
     rank = max(1, int((values > RANK).sum(axis=-1).max()))
     if rank == objective.dimension:
         return None
+    axes = np.flatnonzero(objective.information.any(axis=(0, 1, 2)))
+    if len(axes) == rank:  # nothing is rounded
+        own = np.broadcast_to(np.eye(objective.dimension)[:, axes], (*objective.prior.shape[:-1], rank))
+        return _Coordinates(own, np.swapaxes(own, -1, -2))
     # Directions of least information lie first; a target with fewer measured ones keeps some that are not.
     own = vectors[..., -rank:]
     onto = own @ np.swapaxes(own, -1, -2)
@@ -129,7 +144,7 @@ _Change = tuple["InformationObjective", _Coordinates, "FloatArray | None"]
 """A criterion, its coordinates, and (M,) what computing ``C K`` rounds off of the trace; ``None`` for log-det."""
 
 
-def _change(objective: InformationObjective, measured: _Coordinates) -> _Change | None:
+def _change(objective: InformationObjective, measured: _Coordinates, *, as_output: bool) -> _Change | None:
     """The criterion in the measured coordinates, or in such that it is one of their whole state."""
     if type(objective) is LogDetObjective:
         return _in_coordinates(objective, LogDetObjective, measured), measured, None
@@ -137,19 +152,34 @@ def _change(objective: InformationObjective, measured: _Coordinates) -> _Change 
     if kind not in KINDS:
         return None
     output = np.eye(objective.dimension) if objective.output is None else objective.output
-    mixed = measured.turned @ objective.prior @ measured.basis
-    shown = output @ objective.prior @ measured.basis @ np.linalg.inv(mixed)
+    shown, rounded = _shown(objective, measured, output)
     if kind is MaxEigenvalueObjective and not _is_measured(objective.prior, output, shown @ measured.turned):
         return None
     _, sizes, axes = np.linalg.svd(shown, full_matrices=False)
-    if (sizes[..., -1] <= REGULAR * sizes[..., 0]).any():
+    if (sizes[..., -1] <= (0.0 if as_output else REGULAR) * sizes[..., 0]).any():
         return None
-    condition = sizes_of(mixed) * sizes_of(symmetric_inverse(mixed))
-    rounded = 16 * objective.dimension**2 * UNIT * condition * sizes_of(shown) ** 2 * sizes_of(mixed)
-    if shown.shape[-2] < shown.shape[-1]:
-        return _in_coordinates(objective, kind, measured, shown), measured, rounded
-    mapped = measured.mapped(sizes[..., None] * axes)
-    return _in_coordinates(objective, kind, mapped), mapped, rounded
+    if shown.shape[-2] >= shown.shape[-1]:
+        square = sizes[..., None] * axes
+        mapped = measured if as_output else measured.mapped(square)
+        return _in_coordinates(objective, kind, mapped, square if as_output else None), mapped, rounded
+    return _in_coordinates(objective, kind, measured, shown), measured, rounded
+
+
+def _shown(
+    objective: InformationObjective, measured: _Coordinates, output: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """``C K``, and (M,) what computing it rounds off of the trace.
+
+    ``K = P U D^{-1} q^{-1} D^{-1}`` with ``Q = D q D`` and ``D`` powers of two near the deviations: no digit is lost.
+    """
+    across = objective.prior @ measured.basis
+    mixed = measured.turned @ across
+    units = np.exp2(np.round(np.log2(np.diagonal(mixed, axis1=-2, axis2=-1)) / 2))
+    even = mixed / (units[..., :, None] * units[..., None, :])
+    followed = across / units[..., None, :] @ np.linalg.inv(even)
+    condition = sizes_of(even) * sizes_of(symmetric_inverse(even))
+    sizes = (sizes_of(output) * sizes_of(followed)) ** 2 * sizes_of(even)
+    return output @ followed / units[..., None, :], 16 * objective.dimension**2 * UNIT * condition * sizes
 
 
 def _is_measured(prior: FloatArray, output: FloatArray, seen: FloatArray) -> bool:
@@ -185,7 +215,7 @@ def _error(
     rounded += sizes_of(smaller.information - mapped)  # the symmetric part was taken, and the nearest semidefinite one
     information = _most_of_plans(problem, rounded)
     size = sizes_of(smaller.prior) * largest_sizes(smaller.information, problem.choices)
-    share = np.maximum(SLACK, ROUNDINGS * size)
+    share = np.maximum(SLACK, ROUNDINGS * size) * (not selects(coordinates.turned))  # of what lies outside
     scale = smaller.error_scale(sizes_of(smaller.prior))
     if outputs is not None and scale is not None:
         share = share + smaller.weights * outputs / scale

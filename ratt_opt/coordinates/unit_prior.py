@@ -12,14 +12,11 @@ Information is given as ``G G'``: what is negative in it, by rounding, is left o
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.coordinates.changed import ChangedProblem, change_error, product_error, sizes_of
-from ratt_opt.problem import Problem
+from ratt_opt.coordinates.changed import ChangedProblem, change_error, keeps_digits, product_error, sizes_of
 from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.criteria.maxeig import MaxEigenvalueObjective
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
@@ -27,82 +24,27 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.rounding_errors import UNIT, largest_sizes
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import FloatArray
+    from ratt_opt.problem import Problem
 
 __all__ = ["with_unit_prior"]
 
-AnyProblem = TypeVar("AnyProblem", bound=Problem)
-
-KEPT = "_with_unit_prior"
-TOLERABLE = 1e-9
-"""Error of values, as a share of the criterion before any measurement, that is no reason to change coordinates."""
 WORTHWHILE = 0.1
 """Largest share of the error that may remain."""
 KINDS: tuple[Any, ...] = (TraceObjective, MaxEigenvalueObjective)
 """Criteria that may have an output."""
 
 
-def with_unit_prior(problem: AnyProblem) -> AnyProblem | ChangedProblem:
+def with_unit_prior(problem: Problem) -> Problem:
     """The problem in coordinates in which the prior is the identity, if values lose many digits in the given ones."""
-    kept = vars(problem)  # it is asked for by every attack
-    if KEPT not in kept:
-        kept[KEPT] = _chosen(problem)
-    found: AnyProblem | ChangedProblem = kept[KEPT]
-    return found
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Change:
-    """A criterion in other coordinates ``basis[j]' x`` of targets; the same for all problems with these owners.
-
-    ``before`` : by how much exact values had changed before, ``error`` : by how much they do now
-    ``objective`` : ``None`` if the coordinates stay
-    """
-
-    robot: IntArray
-    before: float
-    objective: InformationObjective | None = None
-    basis: FloatArray | None = None
-    error: float = 0.0
-
-    def is_for(self, problem: Problem) -> bool:
-        """Tell whether the change is the one of a problem with the same criterion."""
-        return self.before == getattr(problem, "change_error", 0.0) and np.array_equal(self.robot, problem.robot)
-
-    def of(self, problem: Problem) -> Problem:
-        """The problem in these coordinates."""
-        if self.objective is None or self.basis is None:
-            return problem
-        if isinstance(problem, ChangedProblem):
-            error = problem.change_error + self.error
-            return ChangedProblem.of(problem.whole, self.objective, problem.basis @ self.basis, error)
-        return ChangedProblem.of(problem, self.objective, self.basis, self.error)
-
-
-def _chosen(problem: Problem) -> Problem:
     objective = problem.objective
-    if not isinstance(objective, InformationObjective):
+    if not isinstance(objective, InformationObjective) or keeps_digits(problem, objective):
         return problem
-    change = _CHANGES.get(objective)
-    if change is None or not change.is_for(problem):
-        change = _CHANGES[objective] = _change(problem, objective)
-    return change.of(problem)
-
-
-_CHANGES: WeakKeyDictionary[InformationObjective, _Change] = WeakKeyDictionary()
-"""Problems that differ in their threats share a change of coordinates: one of many elements takes a second."""
-
-
-def _change(problem: Problem, objective: InformationObjective) -> _Change:
-    scale = objective.error_scale(sizes_of(objective.prior))
-    stay = _Change(robot=problem.robot, before=getattr(problem, "change_error", 0.0))
-    if scale is None or problem.evaluation_error <= TOLERABLE * float(objective.combine(scale)):
-        return stay
     root: FloatArray = np.asarray(np.linalg.cholesky(objective.prior), dtype=np.float64)
     changed = _changed(objective, root)
     basis = np.asarray(np.linalg.inv(np.swapaxes(root, -1, -2)))
-    change = replace(stay, objective=changed, basis=basis, error=_error(problem, objective, changed, root))
-    return change if change.of(problem).evaluation_error <= WORTHWHILE * problem.evaluation_error else stay
+    made = ChangedProblem.of(problem, changed, basis, _error(problem, objective, changed, root))
+    return made if made.evaluation_error <= WORTHWHILE * problem.evaluation_error else problem
 
 
 def _changed(objective: InformationObjective, root: FloatArray) -> InformationObjective:

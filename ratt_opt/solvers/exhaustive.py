@@ -10,7 +10,7 @@ from ratt_opt._validation import FloatArray, IntArray, readonly
 from ratt_opt.attack.exact import worst_case_attack_unrounded
 from ratt_opt.attack.task import AttackOptions
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.coordinates.unit_prior import with_unit_prior
+from ratt_opt.coordinates.preparation import prepared
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.problem import check_problem
@@ -57,8 +57,7 @@ def exhaustive_optimum(
 
     Source: the algorithm OPT of ratt.tex, Section VI.
     """
-    asked = check_problem(problem, knows_at_most=True)
-    problem = with_unit_prior(asked)
+    problem = prepared(check_problem(problem, knows_at_most=True))
     shape = _shape(problem, range(problem.n_robots))
     with np.errstate(over="ignore"):
         n_plans = float(np.prod(np.array(shape, dtype=np.float64)))
@@ -82,8 +81,8 @@ def exhaustive_optimum(
         stop = out.stop
     except KeyboardInterrupt:
         stop = own.interrupt()
-    if asked.at_most is not None:
-        worst[_busy(asked, shape) > asked.at_most] = -np.inf
+    if problem.at_most is not None:
+        worst[_busy(problem, shape) > problem.at_most] = -np.inf
     best = np.unravel_index(int(worst.argmax()), shape)
     picks = iter(best)
     elements = np.array([choice[next(picks) if len(choice) > 1 else 0] for choice in problem.choices])

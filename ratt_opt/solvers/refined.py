@@ -21,7 +21,7 @@ from ratt_opt._validation import check_integer, readonly
 from ratt_opt._values import shown
 from ratt_opt.attack.task import widened_result
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible, undisturbed
-from ratt_opt.coordinates.unit_prior import with_unit_prior
+from ratt_opt.coordinates.preparation import prepared
 from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
@@ -133,7 +133,7 @@ def refined(
     """
     if not isinstance(check_problem(problem, knows_at_most=True).objective, InformationObjective):
         return _refined_by_values(problem, Budget.inside(budget, time_limit), start, (seed, max_kicks), on_improvement)
-    problem = with_unit_prior(problem)
+    problem = prepared(problem)
     kicks_left = None if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
     given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]

@@ -10,6 +10,7 @@ import pytest
 from flint import ctx
 
 import ratt_opt as ro
+from ratt_opt.coordinates.preparation import prepared
 from ratt_opt.coordinates.unit_prior import with_unit_prior
 from tests.exact_values import DIGITS, ExactValues, holds
 from tests.strategies import OBJECTIVES
@@ -56,7 +57,7 @@ def test_no_value_is_further_from_the_exact_one_than_is_said(kind, digits):
         problem = spread_problem(seed, kind, digits, d=min(d, 3) if kind == "maxeig" else d)
         exact, rng = ExactValues(problem), np.random.default_rng(seed)
         for searched in {
-            id(p): p for p in (problem, with_unit_prior(problem), ro.measured_coordinates(problem))
+            id(p): p for p in (problem, with_unit_prior(problem), ro.measured_coordinates(problem), prepared(problem))
         }.values():
             for _ in range(3):
                 chosen = [int(rng.choice(c)) for c in problem.choices if rng.random() < 0.7]
@@ -67,10 +68,10 @@ def test_no_value_is_further_from_the_exact_one_than_is_said(kind, digits):
 def test_problems_with_one_criterion_share_a_change_of_coordinates():
     problem = spread_problem(0, "trace", 9)
     others = replace(problem, alpha_s=0), ro.measured_coordinates(problem)
-    searched, *shared = map(with_unit_prior, (problem, *others))
+    searched, *shared = map(prepared, (problem, *others))
     assert searched.objective is not problem.objective
     assert all(one.objective is searched.objective for one in shared)
-    moved = with_unit_prior(replace(problem, robot=[0, 0, 1, 1, 1, 2]))  # of other owners: the error is another
+    moved = prepared(replace(problem, robot=[0, 0, 1, 1, 1, 2]))  # of other owners: the error is another
     assert moved.objective is not searched.objective
 
 

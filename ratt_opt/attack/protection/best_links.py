@@ -15,7 +15,7 @@ from ratt_opt.attack.protection.known_attacks import KnownAttacks
 from ratt_opt.attack.protection.upgrades import Addition, Protection
 from ratt_opt.attack.task import CLOSED_WIDTH, AttackMemory, AttackOptions, PlanValues, widened_result
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.coordinates.unit_prior import with_unit_prior
+from ratt_opt.coordinates.preparation import prepared
 from ratt_opt.problem import check_problem
 from ratt_opt.running.progress import Step
 
@@ -109,7 +109,7 @@ def links_to_protect(
     InputError : the plan is not one element per robot, a candidate is no link or given twice, ``k`` is no integer >= 0,
         or a budget is not a number >= 0.
     """
-    upgrade = Protection(with_unit_prior(check_problem(problem)), candidates)
+    upgrade = Protection(prepared(check_problem(problem)), candidates)
     search = _LinkSearch(upgrade, elements, k, max_nodes, Budget.inside(budget, time_limit))
     return search.run()
 
@@ -141,7 +141,7 @@ def links_to_add(
     ------
     InputError : as for :func:`links_to_protect`; a candidate that is a link already is refused too.
     """
-    upgrade = Addition(with_unit_prior(check_problem(problem)), candidates)
+    upgrade = Addition(prepared(check_problem(problem)), candidates)
     search = _LinkSearch(upgrade, elements, k, max_nodes, Budget.inside(budget, time_limit))
     return search.run()
 

@@ -11,8 +11,7 @@ import numpy as np
 
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.coordinates.measured import measured_coordinates
-from ratt_opt.coordinates.unit_prior import with_unit_prior
+from ratt_opt.coordinates.preparation import prepared, restored
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Attack, Plan, check_problem
 from ratt_opt.running.progress import Step
@@ -64,9 +63,9 @@ def solve_maxmin(
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
-    Relies on a non-decreasing objective (not checked). For the information criteria: outer approximation
-    and branch and bound, in the coordinates that are measured (:func:`measured_coordinates`). Every bound is derived
-    from the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
+    Relies on a non-decreasing objective (not checked). For the information criteria: outer approximation and branch
+    and bound, in the coordinates that are measured (:func:`ratt_opt.measured_coordinates`). Every bound is derived from
+    the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
     the multipliers are used. Other set functions are enumerated if that is possible, and bracketed if it is not
     (``solvers/by_values``); sums of best elements, such as coverage, as a trace, too (``coverage.py``).
 
@@ -94,10 +93,10 @@ def solve_maxmin(
     budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
     if not isinstance(problem.objective, InformationObjective):
         return solve_by_values(problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap))
-    searched = with_unit_prior(measured_coordinates(problem))
+    searched = prepared(problem)
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
     found = solve_in_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)
-    return replace(searched.lifted(found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
+    return replace(restored(searched, found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
 def _solve_as_trace(problem: Problem, budget: Budget, gap: float) -> MaxMinResult | None:
