@@ -14,7 +14,7 @@ import numpy as np
 from ratt_opt._validation import check_integer
 from ratt_opt.attack.task import AttackResult, PlanValues, widened_result
 from ratt_opt.budget import Budget, Stop
-from ratt_opt.coordinates.preparation import prepared
+from ratt_opt.coordinates.preparation import precise
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ def team_values(values: PlanValues, candidates: Sequence[PartialAttack]) -> Floa
 
 def heuristic_result(problem: Problem, values: PlanValues, attack: Attack) -> AttackResult:
     """The result of a heuristic: its attack's value, and the value of no measurement as lower bound."""
-    lower, evaluations, searched = problem.objective(()), values.evaluations, prepared(problem)
+    lower, evaluations, searched = problem.objective(()), values.evaluations, precise(problem)
     upper = searched.team_value(values.plan, attack)
     found = AttackResult(attack=attack, lower=lower, upper=upper, stop=Stop.HEURISTIC, evaluations=evaluations)
     return replace(widened_result(searched, values.plan, found), lower=lower)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.problem import Problem
 
-__all__ = ["prepared", "restored"]
+__all__ = ["precise", "prepared", "restored"]
 
 Proved = TypeVar("Proved", bound=WithProof)
 
@@ -47,6 +47,13 @@ def prepared(problem: Problem) -> Problem:
         if known is not problem:
             _PREPARED[problem] = known
     return known
+
+
+def precise(problem: Problem) -> Problem:
+    """Return the prepared problem if values in the given coordinates lose digits, to value one attack; else itself."""
+    objective = problem.objective
+    is_precise = not isinstance(objective, InformationObjective) or keeps_digits(problem, objective)
+    return problem if is_precise else prepared(problem)
 
 
 def restored(searched: Problem, result: Proved) -> Proved:
