@@ -36,6 +36,7 @@ from .scenario.simulation import simulate_tracking as simulate_tracking, Trackin
 # == Planners
 from .solvers.refined import RefinedPlan as RefinedPlan, refined as refined
 from .solvers.ratt import ratt as ratt, greedy as greedy, myopic as myopic, random_plan as random_plan
+from .solvers.maxmin.params import MaxMinParams as MaxMinParams
 from .solvers.maxmin.solve import nonrobust_optimum as nonrobust_optimum, solve_maxmin as solve_maxmin
 from .solvers.exhaustive import exhaustive_optimum as exhaustive_optimum
 from .solvers.result import MaxMinResult as MaxMinResult

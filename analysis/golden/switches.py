@@ -12,13 +12,12 @@ from ratt_opt.attack.params import PackingParams, SetSearchParams
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
-from ratt_opt.solvers.maxmin import division, levels
+from ratt_opt.solvers.maxmin import params as plan_parameters
 from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
-from ratt_opt.solvers.maxmin.covers.cover_search import CoverSearch
 from ratt_opt.solvers.maxmin.frontier import Backjumps
-from ratt_opt.solvers.maxmin.marginal_search import MarginalSearch
+from ratt_opt.solvers.maxmin.params import DivisionParams, LevelParams
+from ratt_opt.solvers.maxmin.restarts import RestartedSearch
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
-from ratt_opt.solvers.maxmin.upper_bound_portfolio import RestartedSearch
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:
@@ -39,6 +38,10 @@ def _attacked(**params: Any) -> Patches:
     return ((parameters, "DEFAULT", parameters.AttackParams(**params)),)
 
 
+def _planned(**params: Any) -> Patches:
+    return ((plan_parameters, "DEFAULT", plan_parameters.MaxMinParams(**params)),)
+
+
 STAGE_NAMES = dict.fromkeys(
     stage.name for kind in ("criterion", "sizes") for stage in TABLES[kind] if stage.name not in NEEDED
 )
@@ -51,17 +54,17 @@ BOUNDS: dict[str, Patches] = {
 }
 """Patches that switch off one part of the attack each."""
 PLAN_SWITCHES: dict[str, Patches] = {
-    "covers": ((CoverSearch, "of", _gives(None)),),
-    "marginal gains": ((MarginalSearch, "of", _gives(None)),),
+    "covers": (),
+    "marginal gains": (),
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
     "lasting attacks": ((PlanIndependentAttacks, "of", lambda _problem, attack: attack),),
-    "dividing by what cuts lose": ((division, "FLAT", float("inf")),),
-    "levels above the best plan": ((levels, "SHARES", (0.0,)),),
+    "dividing by what cuts lose": _planned(division=DivisionParams(flat=float("inf"))),
+    "levels above the best plan": _planned(levels=LevelParams(shares=(0.0,))),
     "further trees": ((RestartedSearch, "_is_given_up", _gives(False)),),
 }
-"""Patches that switch off one part of the search for best plans each."""
+"""Patches that switch off one part of the search for best plans each; stages are left out by their names."""
 ATTACK_SWITCHES = [*STAGE_NAMES, *BOUNDS]
 """Names of what can be left out of attacks: stages, then bounds."""
 

@@ -65,7 +65,8 @@ def attack(
 
     An interrupt (Ctrl-C) prints what was found so far and exits with 130.
     """
-    from ratt_opt.attack.params.reading import changed, read_attack_params
+    from ratt_opt._params import changed, read_params
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.protection.best_links import links_to_add, links_to_protect
     from ratt_opt.attack.protection.criticality import breaking_budgets, criticality_ranking
     from ratt_opt.attack.protection.robot_choice import robots_to_protect
@@ -83,7 +84,7 @@ def attack(
         raise InputError("--below", "must be a finite number", below)
     if replan and below is None and rms is None:
         raise InputError("--replan", "must come with --below or --rms", replan)
-    chosen = read_attack_params(params)
+    chosen = read_params(params, AttackParams())
     source = load_input(file)
     problem = source.problem(objective)
     elements = load_plan(plan, problem)
@@ -104,9 +105,8 @@ def attack(
     if add:
         near = None if reach is None else sorted(set(source.pairs_within(reach)) - problem.communication.links)
         links["add"] = _found(budget, lambda: links_to_add(problem, elements, add, candidates=near, **within))
-    found = {name: best for name, best in links.items() if best is not None}
     beside: dict[str, Any] = {
-        "best_links": found,
+        "best_links": {name: best for name, best in links.items() if best is not None},
         "best_robots": robots,
         "params": changed(chosen) if explain else None,
     }

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from ratt_opt.main_job.result import BoundReport
     from ratt_opt.scenario.information_input import InformationInput
     from ratt_opt.scenario.model import Scenario
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
 __all__ = ["bound", "demo"]
 
@@ -81,6 +82,10 @@ def bound(
         str | None,
         typer.Option("--motion", help="Of targets: plan the first step of a mission with it.", show_default=False),
     ] = None,
+    params: Annotated[
+        Path | None,
+        typer.Option("--params", help="TOML: parameters of the search for the best plan that are not as by default."),
+    ] = None,
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
     as_latex: LatexFlag = False,
@@ -89,11 +94,14 @@ def bound(
 
     An interrupt (Ctrl-C) leaves a report of what is proved so far, marked so, and exits with 130.
     """
+    from ratt_opt._params import read_params
     from ratt_opt.scenario.files import load_input
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
+    chosen = read_params(params, MaxMinParams())
     source = load_input(file)
-    shown = {"as_json": as_json, "as_latex": as_latex}
-    _bound(source, out, objective, time_limit, gap, guarantees, motion=motion, certificate=certificate, **shown)
+    shown = {"as_json": as_json, "as_latex": as_latex, "certificate": certificate}
+    _bound(source, out, objective, time_limit, gap, guarantees, motion=motion, params=chosen, **shown)
 
 
 def _bound(
@@ -105,6 +113,7 @@ def _bound(
     guarantees: str = "quick",
     *,
     motion: str | None = None,
+    params: "MaxMinParams | None" = None,
     certificate: bool,
     as_json: bool,
     as_latex: bool,
@@ -123,7 +132,14 @@ def _bound(
     began = monotonic()
     searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
     model = None if motion is None else MissionModel(motion=motion, objective=objective)
-    report = main_job(source, objective=objective, model=model, time_limit=searching, gap=gap, guarantees=guarantees)
+    asked: dict[str, Any] = {
+        "model": model,
+        "time_limit": searching,
+        "gap": gap,
+        "guarantees": guarantees,
+        "params": params,
+    }
+    report = main_job(source, objective=objective, **asked)
     left = max(0.0, time_limit - (monotonic() - began))
     wanted = certificate and not report.interrupted
     with Step("interrupted: writing what is proved", 0.0) if report.interrupted else Step("report"):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
+from ratt_opt._params import changed
 from ratt_opt._rounding import down, up
 from ratt_opt._values import counted
 from ratt_opt.attack.edge_cuts.smallest import largest_group_soon
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.largest_group.counting import LargestGroup
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.planner_world import PlannerWorld
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["Steps", "bound"]
@@ -146,6 +148,7 @@ def bound(
     progress: Callable[[str], None] | None = None,
     guarantees: str = "quick",
     planners: Mapping[str, Planner] | None = None,
+    params: MaxMinParams | None = None,
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
@@ -168,6 +171,7 @@ def bound(
         processor at most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
     planners : planners of your own by name, ``f(problem)`` or ``f(problem, world)`` as in missions: their plans are
         attacked too, and stand beside the others in every table and figure. They take what time they take
+    params : of the search for the best plan (:func:`solve_maxmin`); a remark says which are not as by default
 
     Raises
     ------
@@ -192,7 +196,7 @@ def bound(
         seen = _world_of(given, model, problem) if planners else None
         baselines += tuple(_own_plans(problem, planners or {}, seen, budget))
     with steps("the best possible plan"):
-        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs)
+        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, params=params)
         optimum, best = _best(problem, search, budget)
     with steps("other attacks on the recommended plan"):
         shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)
@@ -228,7 +232,9 @@ def bound(
         views=views,
         seeds={"random": RANDOM_SEED},
         interrupted=whole.stop() is Stop.INTERRUPTED,
-        remarks=_remarks(problem) + (scenario_remarks(given) if isinstance(given, Scenario) else ()),
+        remarks=_remarks(problem)
+        + _remarks_on(params)
+        + (scenario_remarks(given) if isinstance(given, Scenario) else ()),
     )
     return _delivered(report.with_certificate(proof), failure)
 
@@ -373,6 +379,12 @@ def _largest_group(problem: Problem, lower: int, budget: Budget) -> LargestGroup
     if found.lower >= lower:
         return found
     return replace(found, lower=lower, claimed_lower=lower, method="spreading", reason=TREES)
+
+
+def _remarks_on(params: MaxMinParams | None) -> tuple[str, ...]:
+    """Name the parameters that are not as by default."""
+    told = "" if params is None else ", ".join(f"{place} = {value}" for place, value in changed(params).items())
+    return (f"the best plan was searched for with {told}",) if told else ()
 
 
 def _remarks(problem: Problem) -> tuple[str, ...]:

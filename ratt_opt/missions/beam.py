@@ -19,6 +19,7 @@ from ratt_opt.budget import Budget, Stop
 from ratt_opt.missions.ahead.horizon import Sequences, extended
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.solvers.maxmin.solve import check_limits, solve_in_coordinates
+from ratt_opt.solvers.maxmin.stages.schedule import TREES_ALONE
 from ratt_opt.solvers.result import MaxMinResult
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def solve_by_columns(
         part = replace(problem, objective=objective.restricted_to(kept), robot=problem.robot[kept])
         within = Budget.inside(budget, time_limit and budget.seconds_left)
         # Covers and inequalities of base sets have no prices.
-        found = solve_in_coordinates(part, within, INNER_SHARE * gap, in_depth=False, by_rows=False)
+        found = solve_in_coordinates(part, within, INNER_SHARE * gap, stages=TREES_ALONE, by_rows=False)
         nodes, evaluations = nodes + found.nodes, evaluations + found.evaluations
         fresh: IntArray = np.zeros(0, dtype=np.int64)
         if found.proof is not None:

@@ -148,7 +148,7 @@ def refined(
     try:
         if on_improvement is not None:
             incumbent.on_improvement = lambda plan: on_improvement(few.kept[plan])
-        incumbent.pool.list_all()
+        incumbent.pool.list_all(incumbent.params.outcomes)
         others = [planner(problem, budget=own).elements for planner in (greedy, myopic)]
         _meet(incumbent, [among[plan] for plan in (first.elements, *given, *others)])
         kicks = _walked(incumbent, rng, own, kicks_left)

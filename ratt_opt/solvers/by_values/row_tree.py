@@ -25,10 +25,10 @@ from ratt_opt.solvers.by_values.columns import Columns
 from ratt_opt.solvers.by_values.outcome_rows import OutcomeRows, blinds_alone
 from ratt_opt.solvers.by_values.plan_tree import Pooled
 from ratt_opt.solvers.by_values.whole_function import WholeFunction
+from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.relaxation import NodeProgram
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
 from ratt_opt.solvers.maxmin.rows.inequalities import Inequalities, TargetInequality
-from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.pool import InequalityPool
 
 if TYPE_CHECKING:

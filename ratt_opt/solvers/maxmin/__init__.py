@@ -1,12 +1,12 @@
 """The exact max-min search: the plan of largest worst-case value, and a proof that none is better.
 
-Open ``solve.py`` first. ``upper_bound_portfolio.py`` runs the searches for the upper bound in turn, by time slices
-(``time_slices.py``).
+Open ``solve.py`` first. ``upper_bound_portfolio.py`` runs the stages of ``stages/schedule.py`` in turns, which lower
+the upper end, by time slices (``time_slices.py``). Every number is a field of ``params``.
 
-- Concave relaxations, tree after tree: ``branch_and_bound.py`` is the loop over the nodes of one tree. ``frontier.py``
-  holds the nodes and the closing rule, ``relaxation.py`` the linear program, ``cut_store.py`` its cuts. ``winners.py``
-  decides which group of an outcome counts, ``small_groups.py`` tabulates small groups. ``division.py`` divides a node,
-  by ``mixtures.py``. ``known.py`` is the state that all trees share.
+- Concave relaxations, tree after tree (``restarts.py``): ``branch_and_bound.py`` is the loop over the nodes of one
+  tree. ``frontier.py`` holds the nodes and the closing rule, ``relaxation.py`` the linear program, ``cut_store.py`` its
+  cuts. ``winners.py`` decides which group of an outcome counts, ``small_groups.py`` tabulates small groups.
+  ``division.py`` divides a node, by ``mixtures.py``. ``known.py`` is the state that all trees share.
 - Searches in depth, if robots see few targets: ``levels.py``, by ``covers/`` or by marginal gains
   (``marginal_search.py``, ``marginal_tables.py``).
 

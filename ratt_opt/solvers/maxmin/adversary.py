@@ -19,12 +19,14 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.graph.outcomes import realise
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.information import triangles
+from ratt_opt.solvers.maxmin.params import or_default
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.params import AdversaryParams
 
 __all__ = ["Adversary", "PlanIndependentAttacks"]
 
@@ -35,11 +37,11 @@ class PlanIndependentAttacks:
     If all robots are alike to the adversary, an attack may leave any of the robots outside its largest group in the
     smaller ones. Those that are weak under this plan may be strong under others, and then nobody knows beforehand which
     group of the outcome wins: the search has to divide on it. Robots that are weak whatever they do hurt the team just
-    as much, and their groups can be closed once and for all.
+    as much, and their groups can be closed once and for all. ``share`` : of the remaining time, for one attack
     """
 
-    def __init__(self, problem: Problem, budget: Budget) -> None:
-        self._problem, self._budget = problem, budget
+    def __init__(self, problem: Problem, budget: Budget, share: float) -> None:
+        self._problem, self._budget, self._share = problem, budget, share
         self._known: dict[tuple[frozenset[int], tuple[int, ...]], Attack] = {}
 
     def of(self, attack: Attack) -> Attack:
@@ -55,7 +57,7 @@ class PlanIndependentAttacks:
             return attack
         key = groups[0], sizes
         if key not in self._known:
-            others = self._weakest(groups[0], sizes, self._budget.part(QUICK_SHARE))
+            others = self._weakest(groups[0], sizes, self._budget.part(self._share))
             if others is None:
                 return attack
             outcome = (groups[0], *others)
@@ -110,35 +112,19 @@ def _at_their_best(problem: Problem) -> Team | None:
     return Team(objective, triangles(objective.prior_information), triangles(information[best, targets]))
 
 
-SEARCHED_BY_SIZE = 12
-"""Larger teams with all links alike are attacked by exchanges first: fast and hardly ever wrong."""
-QUICK_SHARE = 0.05
-"""Share of the remaining time for one quick attack, and for exchanges next to known outcomes before it.
-Without a limit quick attacks on 100 robots took up to two seconds each, and exchanges all of 50 on 1,000; an exchange
-takes a third of one."""
-NEAR = 4
-"""Known outcomes, those that hurt a plan most, from which a worse one is sought before the plan is attacked anew. Not
-tuned."""
-
-
-BRIEF_MOVES, MOVES = 300, 2_000
-"""Moves a robot of annealing a known attack briefly, as for each relaxed plan, and of a plan that this did not hurt."""
-
-
-REMEMBERED = 4
-"""Plans whose exact attacks can go on where they ended: some megabytes each."""
-
-
 class Adversary:
     """Attacks one problem's plans, quickly or exactly; every outcome enters the pool.
 
     Raises ``OutOfBudget`` : the user interrupted an attack; its outcome has entered the pool.
     """
 
-    def __init__(self, problem: Problem, pool: OutcomePool, budget: Budget) -> None:
+    def __init__(
+        self, problem: Problem, pool: OutcomePool, budget: Budget, params: AdversaryParams | None = None
+    ) -> None:
         self.problem, self.pool, self.budget = problem, pool, budget
-        self._lasting = PlanIndependentAttacks(problem, budget)
-        on_network = problem.n_robots > SEARCHED_BY_SIZE and not problem.threat.links_alike
+        self._params = or_default(None).adversary if params is None else params
+        self._lasting = PlanIndependentAttacks(problem, budget, self._params.quick)
+        on_network = problem.n_robots > self._params.small and not problem.threat.links_alike
         self.on_network = on_network
         self._annealed = AnnealedAttacks.of(problem, budget) if on_network else None
         self._memories: dict[bytes, AttackMemory] = {}
@@ -146,7 +132,7 @@ class Adversary:
     @property
     def is_exact_cheaply(self) -> bool:
         """True if an exact attack costs little, and can find more than the known outcomes."""
-        return self.problem.n_robots <= SEARCHED_BY_SIZE and not self.pool.complete
+        return self.problem.n_robots <= self._params.small and not self.pool.complete
 
     def learn(self, plan: IntArray) -> bool:
         """Attack a plan quickly, unless all outcomes are known; whether that found a new outcome."""
@@ -161,7 +147,8 @@ class Adversary:
             return False
         before, known = self.pool.plan_value(plan), len(self.pool)
         worst = self._worst_known(self.problem, plan)
-        for moves, first in (BRIEF_MOVES, worst), (MOVES, None), (MOVES, worst), (MOVES, None):
+        brief, moves_each = self._params.brief_moves, self._params.moves
+        for moves, first in (brief, worst), (moves_each, None), (moves_each, worst), (moves_each, None):
             attack = self._annealed.attack(self.problem, plan, moves, first)
             least = self.problem.objective.least_improvement(before)
             if attack is not None and self.problem.team_value(plan, attack) < before - least:
@@ -181,12 +168,12 @@ class Adversary:
     def _learn_near(self, plan: IntArray) -> bool:
         """Exchange robots of known outcomes for a worse one: few descents if an attack takes hundreds."""
         team = Team.of(self.problem.objective, plan) if self.problem.threat.is_symmetric else None
-        if team is None or len(plan) <= SEARCHED_BY_SIZE:
+        if team is None or len(plan) <= self._params.small:
             return False
         teams = self._known_values(self.problem, plan)
         best: GroupExchanges | None = None
-        lowest, part = float(teams.min(initial=np.inf)), self.budget.part(QUICK_SHARE)
-        for outcome in np.argsort(teams, kind="stable")[:NEAR].tolist():
+        lowest, part = float(teams.min(initial=np.inf)), self.budget.part(self._params.quick)
+        for outcome in np.argsort(teams, kind="stable")[: self._params.near].tolist():
             if part.is_over:
                 break
             groups = [self.pool.groups[g] for g in self.pool.of_outcome[outcome] if self.pool.groups[g]]
@@ -206,7 +193,7 @@ class Adversary:
         owners = np.arange(self.problem.n_robots)
         objective = self.pool.objective.with_information(of_robot)
         relaxed = replace(self.problem, objective=objective, robot=owners, at_most=None)
-        if len(owners) <= SEARCHED_BY_SIZE:
+        if len(owners) <= self._params.small:
             self.pool.add(greedy_attack(relaxed, owners).attack)
         self._remember(relaxed, owners, self._attack_relaxed(relaxed, owners))
         return len(self.pool) > known
@@ -214,7 +201,7 @@ class Adversary:
     def _attack_relaxed(self, relaxed: Problem, owners: IntArray) -> Attack:
         annealed, worst = None, self._worst_known(relaxed, owners)
         if self._annealed is not None:
-            annealed = self._annealed.attack(relaxed, owners, BRIEF_MOVES, worst)
+            annealed = self._annealed.attack(relaxed, owners, self._params.brief_moves, worst)
         return self._quick_attack(relaxed, owners) if annealed is None else annealed
 
     def attack(self, plan: IntArray, budget: Budget, aim: float = -np.inf) -> AttackResult:
@@ -244,7 +231,7 @@ class Adversary:
         """Return the memory of earlier exact attacks on the plan, if it is one of the last few attacked."""
         memory = self._memories.pop(plan.tobytes(), None) or AttackMemory()
         self._memories[plan.tobytes()] = memory
-        if len(self._memories) > REMEMBERED:
+        if len(self._memories) > self._params.remembered:
             del self._memories[next(iter(self._memories))]
         return memory
 
@@ -264,11 +251,11 @@ class Adversary:
             self.pool.add(attack)
 
     def _quick_attack(self, problem: Problem, plan: IntArray) -> Attack:
-        if problem.n_robots <= SEARCHED_BY_SIZE:
+        if problem.n_robots <= self._params.small:
             return bounded_rational_attack(problem, plan).attack
         if not problem.threat.links_alike:
             return greedy_attack(problem, plan, budget=self.budget).attack
-        options = AttackOptions(max_nodes=0, budget=self.budget.part(QUICK_SHARE), brief=True)
+        options = AttackOptions(max_nodes=0, budget=self.budget.part(self._params.quick), brief=True)
         found = worst_case_attack_unrounded(problem, plan, options)
         self.raise_if_interrupted(found)
         return found.attack

@@ -18,25 +18,19 @@ from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division, WinnerDivisio
 from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.frontier import Backjumps, Frontier
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
-from ratt_opt.solvers.maxmin.relaxation import CUTS_A_ROUND, CutRounds
+from ratt_opt.solvers.maxmin.relaxation import CutRounds
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.winners import Winners
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
-    from ratt_opt.solvers.maxmin.known import Known, Progress
+    from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
     from ratt_opt.solvers.maxmin.time_slices import TimeSlices
+    from ratt_opt.solvers.maxmin.turn import Progress
 
 __all__ = ["BranchAndBound"]
-
-# Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
-STALL = 0.03
-"""A round that closes less than this share of the remaining gap is a stall. 0.01 takes 32 nodes, 0.1 takes 30."""
-STALLS_ELSEWHERE, STALLS_AT_ROOT = 2, 12
-"""Stalls that end the rounds: more rounds against more nodes. Elsewhere 1 and 4 take 30 nodes; at the root, whose
-cuts all nodes inherit, 2 take 32 and 40 take 34. Larger teams were not measured."""
 
 
 class BranchAndBound:
@@ -105,7 +99,8 @@ class BranchAndBound:
             self.frontier.close(node)
             return None
         nodes, stalls = slices.budget.nodes, 0
-        allowed_stalls = STALLS_AT_ROOT if nodes == 1 else STALLS_ELSEWHERE
+        params = self.task.params.rounds
+        allowed_stalls = params.stalls_at_root if nodes == 1 else params.stalls
         hulls = self.rounds.hulls_at(nodes)
         why_stop = slices.stop_within_node if self.rounds.begins_with_rows else slices.stop
         self.rounds.begin(node)
@@ -125,7 +120,7 @@ class BranchAndBound:
             if self.incumbent.offer(plan):
                 self.incumbent.improve(plan)
             self.frontier.current = node = self._eliminate(node, *found)
-            stalls = stalls + 1 if before - node.bound < STALL * (node.bound - self.rule.level) else 0
+            stalls = stalls + 1 if before - node.bound < params.stall * (node.bound - self.rule.level) else 0
             stalled = not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls
             if stalled and hulls > 0 and self.rounds.sharpen(node, relaxed):
                 hulls, stalls, stalled = hulls - 1, 0, False
@@ -189,6 +184,6 @@ class BranchAndBound:
                 self.rounds.use(k)
                 leaf = Leaf(cuts=(k,), weights=(1.0,))
                 node.tighten(leaf, self.cuts.leaf_bound(leaf, node.choices)[0])
-            if len(self.cuts) >= 4 * CUTS_A_ROUND or self.incumbent.budget.is_over:
+            if len(self.cuts) >= 4 * self.task.params.rounds.cuts or self.incumbent.budget.is_over:
                 break
         return node

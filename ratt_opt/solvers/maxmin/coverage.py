@@ -17,31 +17,17 @@ import numpy as np
 
 from ratt_opt.setfunctions.best_elements import BestElements
 from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.solvers.maxmin.params import or_default
 
 if TYPE_CHECKING:
     from typing import Self
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.params import CoverageParams
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["CoverageParams", "CoverageTrace"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CoverageParams:
-    """Numbers of the trace.
-
-    ``information`` : of an element that covers an item; more leaves less between both values, and linear programs worse
-        scaled: with 1e8 ten robots did not close in a minute, with 1e6 in eight seconds
-    ``most_entries`` : elements times items; beyond it the trace takes too much memory and time
-    ``share`` : of the seconds left, for the search of the trace; ``nodes`` : of it, if nothing is limited
-    """
-
-    information: float = 1e6
-    most_entries: int = 200_000
-    share: float = 0.8
-    nodes: int = 1_000
+__all__ = ["CoverageTrace"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -58,7 +44,7 @@ class CoverageTrace:
     @classmethod
     def of(cls, problem: Problem, params: CoverageParams | None = None) -> Self | None:
         """The trace of a sum of best elements; ``None`` for other functions, and if it would be too large."""
-        f, params = problem.objective, params or CoverageParams()
+        f, params = problem.objective, or_default(None).coverage if params is None else params
         if not isinstance(f, BestElements):
             return None
         covers, weights = _items(f.utility, f.weights, params.most_entries)

@@ -24,19 +24,10 @@ if TYPE_CHECKING:
 
 __all__ = ["NEGLIGIBLE", "Division", "WinnerDivision"]
 
-FLAT = 1e-2
-"""Mixtures that cost less than this share of the gap in every cut do not explain it; known outcomes that a rounded plan
-falls short in may. 0 and 0.1 take as many nodes in teams of ten."""
-SHORT_OUTCOMES = 16
-"""Outcomes that a rounded plan falls short in most, looked at if mixtures explain nothing. 4 and 64 take as many
-nodes in teams of ten."""
 NEGLIGIBLE = 1e-12
 """Multipliers below this are left out of a leaf."""
 CUT_OFF = 1e-9
 """Share of the relaxed level by which an undecided winner has to be lower to be divided on."""
-COMPARED = 8
-"""Outcomes of which the one that the fewest groups may win is divided on. Of 20 robots at (0, 180), max-eigenvalue, 1
-left 5 % open after 12 s and 2 % after 30 s; 8 left 1 and 5 % after 12 s and closed in 16 s; 32 left 5 % after 12 s."""
 
 
 class WinnerDivision:
@@ -66,7 +57,7 @@ class WinnerDivision:
         rising = np.argsort(teams, kind="stable")
         low = (outcome for outcome in rising[teams[rising] < level].tolist() if self.winners.of(node, outcome) is None)
         chosen, fewest = None, np.inf
-        for outcome in islice(low, COMPARED):
+        for outcome in islice(low, self.task.params.division.compared):
             groups = sorted(self.pool.of_outcome[outcome], key=lambda g: -values[g])
             may_win = (g for g in groups if self._proofs.find(g, node.choices) is None)
             count = sum(1 for _ in islice(may_win, None if chosen is None else int(fewest)))
@@ -172,7 +163,7 @@ class Division:
         scores = self.cuts.scores(relaxed.cuts[active])
         losses = rounding_losses(node.choices, relaxed.selection, scores)
         i = int(losses.argmax())
-        if losses[i] > FLAT * (node.bound - self.frontier.rule.level):
+        if losses[i] > self.task.params.division.flat * (node.bound - self.frontier.rule.level):
             return i, divide_by_scores(node.choices[i], relaxed.selection, scores, relaxed.duals[active])
         return self._most_gained(node, relaxed, open_robots)
 
@@ -197,7 +188,7 @@ class Division:
         plan = relaxed.rounded(node.choices)
         values = self.pool.group_values(self.task.objective.information[plan])
         teams = self.pool.outcome_values(values)
-        worst = np.argsort(teams, kind="stable")[:SHORT_OUTCOMES]
+        worst = np.argsort(teams, kind="stable")[: self.task.params.division.short_outcomes]
         worst = worst[teams[worst] < relaxed.level]
         best = [max(self.pool.of_outcome[o], key=lambda g: values[g]) for o in worst.tolist()]
         return np.array(best, dtype=np.int64), relaxed.level - teams[worst]

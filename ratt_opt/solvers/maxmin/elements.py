@@ -14,6 +14,7 @@ from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import ElementsRecord
 from ratt_opt.setfunctions.base import IMPROVEMENT
 from ratt_opt.setfunctions.information import triangles
+from ratt_opt.solvers.maxmin.params import or_default
 from ratt_opt.solvers.undominated import dominators, undominated
 
 if TYPE_CHECKING:
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
     from ratt_opt.solvers.undominated import UndominatedProblem
 
 __all__ = ["Choices", "Elements", "ElementsRecord", "PackedElements", "Task", "padded", "with_choice"]
@@ -36,7 +38,7 @@ class Task:
 
     ``classes`` : per robot, lowest element -> all its elements with the same information: one of each is searched.
     ``choices`` : the first element of each class of each robot: all that a search has to choose from.
-    ``singles`` : (E,) values of the elements alone.
+    ``singles`` : (E,) values of the elements alone. ``params`` : of the search
     """
 
     problem: Problem
@@ -44,9 +46,10 @@ class Task:
     classes: tuple[dict[int, list[int]], ...]
     choices: Choices
     singles: FloatArray
+    params: MaxMinParams
 
     @classmethod
-    def of(cls, problem: Problem) -> Task:
+    def of(cls, problem: Problem, params: MaxMinParams | None = None) -> Task:
         """Group each robot's elements by equal information."""
         objective = problem.information_objective
         classes = []
@@ -56,7 +59,7 @@ class Task:
                 alike.setdefault(objective.information[e].tobytes(), []).append(e)
             classes.append({members[0]: members for members in alike.values()})
         choices = tuple(np.array(sorted(own), dtype=np.int64) for own in classes)
-        return cls(problem, objective, tuple(classes), choices, objective.singletons())
+        return cls(problem, objective, tuple(classes), choices, objective.singletons(), or_default(params))
 
     def members(self, robot: int, elements: IntArray) -> tuple[int, ...]:
         """All elements of one robot that are equal to one of these."""

@@ -38,8 +38,6 @@ rounding, of some such. Half of what a result counts as closed. With 1 a team wh
 the winners of dozens of outcomes, without end."""
 SPACING_MARGIN = 1e-9
 """Relative distance that bounds keep from the next value that a plan can have."""
-MOST_NODES = 128
-"""Nodes of a proof that is tried with elements that were left out: some hundredths of a millisecond each. Not tuned."""
 
 
 class ClosingRule:
@@ -232,7 +230,9 @@ class Backjumps:
         below = []
         for one in nodes_below(node):
             below.append(one)
-            if len(below) > MOST_NODES or (one.split is not None and one.split.divides(split.subject)):
+            if len(below) > self.cuts.task.params.division.widened or (
+                one.split is not None and one.split.divides(split.subject)
+            ):
                 return False
         wide = {one: with_choice(one.choices, split.subject, parent.choices[split.subject]) for one in below}
         leaves = [one for one in below if one.split is None]

@@ -11,6 +11,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.solvers.maxmin.adversary import Adversary
 from ratt_opt.solvers.maxmin.candidates import Candidates, climb
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.params import or_default
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
 __all__ = ["PROVED", "Incumbent", "ProvedPlan", "break_ties"]
 
@@ -71,39 +73,25 @@ class ProvedPlan:
             self.elements, self.lower, self.worst_case = plan.copy(), result.lower, result
 
 
-LOCAL_SEARCH_ROUNDS = 50
-"""Rounds of climbing and attacking after which a plan is left as it is; in teams of ten 1 takes as many nodes."""
-FIRST_PROOF, FIRST_SHARE = 500_000, 0.1
-"""Nodes, and share of the time left, spent at once on attacks that bound the first plan, and the best one, from below.
-Nearly all attacks on teams of up to 30 robots close in less."""
-NETWORK_SHARE = 0.02
-"""Share of the time for a first attack on networks, if attacks go on later where they ended.
-With a tenth (and 500,000 nodes) 20 of 120 seconds went into two such attacks at 30 robots of hubs, with a third blinded
-and 30 % of the links cut."""
-FIRST_SECONDS, SHORT_SHARE = 1.0, 0.95
-"""Fewest seconds of the first attack, if they are at most this share of the remaining ones.
-A tenth of a second proves little, and a search of one second mostly serves for what is proved of RATT's plan."""
-IMPROVED_SHARE = 0.1
-"""Share of the remaining time for the local search from one plan, and for attacks on one plan that is offered.
-At 100 robots each attack on the way takes up to two seconds."""
-RIVAL_SHARE = 0.5
-"""Share of the remaining time, once, for a second attack on a plan that has a higher proved value than the best one."""
-RACE_SHARE = 0.2
-"""Share of the remaining time on networks for the first plan, and for the best one; that of higher proved value
-gets the rest. On hubs of 30 robots, a third blinded and 30 % of the links cut, 44 seconds proved 397.1 of the first
-one's 404.6, and 393.5 of the best one's 405.7, of which 110 seconds proved no more."""
-LEFT_EARLY, EARLY = 0.05, 0.5
-"""Share of what is open of the best plan that an attack on a network has to take off for another plan to be looked for
-at once, and of the time in which that is done: its first stages find most such attacks, its proof takes the time."""
-
-
 class Incumbent:
-    """Plans are offered and improved as candidates; the best of them is attacked exactly in the end."""
+    """Plans are offered and improved as candidates; the best of them is attacked exactly in the end.
 
-    def __init__(self, problem: Problem, pool: OutcomePool, first: IntArray, budget: Budget) -> None:
+    ``params`` : of the search
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        pool: OutcomePool,
+        first: IntArray,
+        budget: Budget,
+        params: MaxMinParams | None = None,
+    ) -> None:
         self.problem, self.pool, self.budget = problem, pool, budget
+        self.params = or_default(params)
+        self._shares = self.params.incumbent
         self.candidates = Candidates(pool, first)
-        self.adversary = Adversary(problem, pool, budget)
+        self.adversary = Adversary(problem, pool, budget, self.params.adversary)
         self.proved = ProvedPlan(self.adversary, first)
         self.on_improvement: Callable[[IntArray], object] | None = None
         """Called with each plan that becomes the best."""
@@ -137,10 +125,10 @@ class Incumbent:
             self.proved.attack(self.candidates.best, self._first_part())
 
     def _first_part(self) -> Budget:
-        seconds = min(FIRST_SECONDS, SHORT_SHARE * self.budget.seconds_left)
+        seconds = min(self._shares.first_seconds, self._shares.short * self.budget.seconds_left)
         if self.adversary.on_network and np.isfinite(seconds):
-            return self.budget.part(NETWORK_SHARE, at_least=seconds)
-        return self.budget.part(FIRST_SHARE, max_nodes=FIRST_PROOF, at_least=seconds)
+            return self.budget.part(self._shares.first_on_network, at_least=seconds)
+        return self.budget.part(self._shares.first, max_nodes=self._shares.first_nodes, at_least=seconds)
 
     def offer(self, plan: IntArray, part: Budget | None = None) -> bool:
         """Attack a plan that is better on the known outcomes; return whether it became the best.
@@ -149,7 +137,7 @@ class Incumbent:
         """
         if self.budget.is_over or not self.candidates.is_better(plan) or not self.candidates.meet(plan):
             return False
-        part = self.budget.part(IMPROVED_SHARE) if part is None else part
+        part = self.budget.part(self._shares.improved) if part is None else part
         while self.adversary.learn(plan) and self.candidates.is_better(plan) and not part.is_over:
             pass  # what was learnt may be weaker than what there is to learn
         if self.candidates.is_better(plan) and self.adversary.is_exact_cheaply:
@@ -167,8 +155,8 @@ class Incumbent:
         if (key := plan.tobytes()) in self._started:
             return
         self._started.add(key)
-        current, part = plan, self.budget.part(IMPROVED_SHARE)
-        for _ in range(LOCAL_SEARCH_ROUNDS):
+        current, part = plan, self.budget.part(self._shares.improved)
+        for _ in range(self._shares.rounds):
             if part.is_over:
                 self.offer(current, part)
                 return
@@ -202,20 +190,20 @@ class Incumbent:
         if rival is not None:
             self._rivals.add(rival.tobytes())
             if self.adversary.on_network:
-                yield rival, RACE_SHARE
-                yield best, RACE_SHARE
+                yield rival, self._shares.race
+                yield best, self._shares.race
                 if np.array_equal(self.proved.elements, rival):
                     yield rival, 1.0
             else:
-                yield rival, RIVAL_SHARE
+                yield rival, self._shares.rival
         yield best, 1.0
 
     def _aim(self) -> float:
         """Return the value of the best plan under attack at which a search for other plans comes before its proof."""
         limit, level = self.budget.time_limit, self.candidates.level
-        if not self.adversary.on_network or limit is None or self.budget.elapsed > EARLY * limit:
+        if not self.adversary.on_network or limit is None or self.budget.elapsed > self._shares.early * limit:
             return -np.inf
-        return level - LEFT_EARLY * (level - self.proved.lower)
+        return level - self._shares.left_early * (level - self.proved.lower)
 
     def _rival(self) -> IntArray | None:
         """The plan of which most is proved, unless it is the best one, was a rival, or no more is to be proved of it.
@@ -231,12 +219,8 @@ class Incumbent:
         return plan if is_open else None
 
 
-TIES_SHARE, TIES_NODES = 0.1, 100_000
-"""Share of the remaining time for breaking ties, and nodes of each attack on a plan that is worth more."""
 NO_MORE = 1e-9
 """Relative difference of values without attack that counts as none."""
-TIES_ROUNDS = 10
-"""Plans that are attacked at most; each that falls teaches an attack."""
 
 
 def break_ties(incumbent: Incumbent, budget: Budget) -> None:
@@ -246,13 +230,14 @@ def break_ties(incumbent: Incumbent, budget: Budget) -> None:
 
     Raises ``OutOfBudget`` : the user interrupted the attack; the old plan stays.
     """
-    part, proved = budget.part(TIES_SHARE), incumbent.proved
-    for _ in range(TIES_ROUNDS):
+    params, proved = incumbent.params.ties, incumbent.proved
+    part = budget.part(params.share)
+    for _ in range(params.rounds):
         plan = _richer(incumbent, proved.elements, part)
         if np.array_equal(plan, proved.elements) or part.is_over:
             return
         tied = ProvedPlan(incumbent.adversary, plan)
-        tied.attack(plan, part.part(max_nodes=TIES_NODES))
+        tied.attack(plan, part.part(max_nodes=params.nodes))
         tied.evaluations += proved.evaluations
         if tied.worst_case is not None and tied.lower >= proved.lower - PROVED * abs(proved.lower):
             incumbent.proved = tied

@@ -22,18 +22,12 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
-    from ratt_opt.solvers.maxmin.known import Known, Progress
+    from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.time_slices import TimeSlices
+    from ratt_opt.solvers.maxmin.turn import Turn
 
 __all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
-
-SHARES = (0.0, 0.25, 0.5, 0.75)
-"""Levels tried in turn, as shares of the open bracket above the best plan."""
-WALK_KICKS, WALK_SHARE = 50, 0.05
-"""Kicks, and share of the time left, in which a better plan is looked for once the best plan's level took too long."""
-FIRST_RUNS, GROWTH = 20, 2
-"""Runs of the first search at each level, and how many times as many the next ones have."""
 
 
 class Outcome(IntEnum):
@@ -70,7 +64,7 @@ class LevelSearch(ABC):
     def is_long(self) -> bool:
         """True if the record is as long as memory should hold."""
 
-    def run(self, slices: TimeSlices, runs: int) -> Ending:
+    def run(self, slices: TimeSlices, runs: float) -> Ending:
         """Search until nothing is open, the runs are spent, or it is time to stop."""
         until = self.runs + runs
         while self.runs < until:
@@ -125,13 +119,14 @@ class LevelSearch(ABC):
 
 
 class SearchByLevels(ABC):
-    """``upper`` : proved upper bound on the optimum, infinite before the first search is complete."""
+    """``upper`` : upper bound on the optimum that this search proved, infinite before the first level is done."""
 
     def __init__(self, known: Known, elements: Elements) -> None:
         self._known, self._elements, self.upper = known, elements, np.inf
         self._searches: dict[int, LevelSearch] = {}
-        self._runs, self._share, self._left = FIRST_RUNS, 0, FIRST_RUNS
-        self._in_vain = np.inf
+        self._params = known.task.params.levels
+        self._runs, self._share, self._left = self._params.runs, 0, self._params.runs
+        self._in_vain = self._others = np.inf
         self._walk = Walk(known.incumbent, np.random.default_rng(0))
 
     @abstractmethod
@@ -146,16 +141,13 @@ class SearchByLevels(ABC):
     def _keep(self, search: LevelSearch) -> None:
         """Take what a search proved."""
 
-    def run(self, slices: TimeSlices, progress: Progress, upper: float, most_nodes: int) -> Stop:
-        """Search on until nothing is left, these nodes are spent or it is time to stop.
-
-        ``upper`` : what is proved otherwise
-        """
-        budget = slices.budget
-        until = budget.nodes + most_nodes
-        self.upper, told = min(self.upper, upper), budget.nodes
+    def run(self, turn: Turn) -> Stop:
+        """Search on until nothing is left, the turn's nodes are spent or it is time to stop."""
+        slices, progress, budget = turn.slices, turn.progress, turn.slices.budget
+        until, told = budget.nodes + turn.nodes, budget.nodes
+        self._others = turn.upper
         while True:
-            if self.upper <= self._known.rule.better or self._known.rule.closes(self.upper):
+            if (upper := self._lowest()) <= self._known.rule.better or self._known.rule.closes(upper):
                 return Stop.GAP
             if (stop := budget.stop() or slices.stop()) is not None:
                 return stop
@@ -169,7 +161,7 @@ class SearchByLevels(ABC):
             if ending is Ending.LIMIT and self._left > 0 and not search.is_long:
                 continue  # these nodes are spent, its runs are not
             if ending is Ending.LIMIT and self._share == 0:
-                self._walk.run(budget.part(WALK_SHARE), WALK_KICKS)
+                self._walk.run(budget.part(self._params.walk_share), self._params.walk_kicks)
             if ending is Ending.PROVED:
                 self._keep(search)
                 del self._searches[self._share]
@@ -178,7 +170,7 @@ class SearchByLevels(ABC):
             self._next_share(ending)
             if progress is not None and budget.nodes > told:
                 told = budget.nodes
-                progress(budget.nodes, self._known.incumbent.proved.lower, self.upper)
+                progress(budget.nodes, self._known.incumbent.proved.lower, self._lowest())
 
     def _make_room(self) -> None:
         """Give up searches of long records."""
@@ -189,11 +181,11 @@ class SearchByLevels(ABC):
         if ending is Ending.STOPPED:  # it goes on with the runs that are left
             return
         if self._share == 0 or ending is Ending.PROVED:
-            self._share = (self._share - 1) % len(SHARES)
+            self._share = (self._share - 1) % len(self._params.shares)
         else:
             self._share = 0
         if self._share == 0:
-            self._runs *= GROWTH
+            self._runs *= self._params.growth
         self._left = self._runs
 
     def _search(self) -> LevelSearch:
@@ -206,4 +198,9 @@ class SearchByLevels(ABC):
 
     def _level(self) -> float:
         floor = self._known.incumbent.candidates.level
-        return max(floor + SHARES[self._share] * (self.upper - floor), self._known.rule.better)
+        share, upper = self._params.shares[self._share], self._lowest()
+        return max(floor + share * (upper - floor) if share > 0 else floor, self._known.rule.better)
+
+    def _lowest(self) -> float:
+        """The upper end by this search or by others."""
+        return min(self.upper, self._others)

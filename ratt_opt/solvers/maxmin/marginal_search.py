@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.native.loops import loops
-from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.rounding_errors import UNIT
 from ratt_opt.solvers.maxmin.elements import PackedElements, padded
 from ratt_opt.solvers.maxmin.levels import LevelSearch, Outcome, SearchByLevels
-from ratt_opt.solvers.maxmin.marginal_tables import BRANCHED, MOST_ROBOTS, Attacks, Choosers, Gains, Path
+from ratt_opt.solvers.maxmin.marginal_tables import BRANCHED, Attacks, Choosers, Gains, Path
 from ratt_opt.solvers.maxmin.proof import ElementBranch, MarginalLeaf, UpperProof
 
 if TYPE_CHECKING:
@@ -29,20 +28,10 @@ if TYPE_CHECKING:
 
 __all__ = ["MarginalSearch", "dive", "raised_information"]
 
-RUN = 1000
-"""Nodes between two looks at the clock: some ten milliseconds with ten robots."""
-FIRST_RECORD, MOST_RECORDED = 1 << 14, 10_000_000
-"""Nodes of a record: it grows, to 40 MB at most."""
-MOST_TRIED = 200
-"""Attacks that are tried at a node if robots have not chosen yet."""
-SETS = 64
-"""Sets of its seers for which the gains of each target are kept."""
 ROUNDINGS = 4
 """Evaluation errors by which values of one plan, computed in two ways, may differ, and both from the exact one."""
 EIGENVALUES = 8
 """Roundings, of the matrices' sizes and for each dimension, by which computed eigenvalues may be off."""
-MOST_PLANS = 1e12
-"""Plans of undominated elements: of more, too few are dead ends early."""
 
 
 def raised_information(elements: Elements) -> FloatArray:
@@ -95,12 +84,23 @@ class ChoosingTeam:
 
 
 def dive(
-    choosers: Choosers, attacks: Attacks, gains: Gains, path: Path, *, level: float, slack: float, nodes: int
+    choosers: Choosers,
+    attacks: Attacks,
+    gains: Gains,
+    path: Path,
+    *,
+    level: float,
+    slack: float,
+    nodes: int,
+    tried: int,
 ) -> Outcome:
-    """Search on for some nodes; how that ended. A plan worth more than ``level`` by up to ``slack`` is not found."""
+    """Search on for some nodes; how that ended. A plan worth more than ``level`` by up to ``slack`` is not found.
+
+    ``tried`` : attacks that are tried at a node if robots have not chosen yet
+    """
     path.make_room(nodes)
     records = choosers.record, attacks.record, gains.record, path.record
-    return Outcome(loops.dive_by_marginals(*records, level, slack, nodes, MOST_TRIED))
+    return Outcome(loops.dive_by_marginals(*records, level, slack, nodes, tried))
 
 
 class MarginalLevelSearch(LevelSearch):
@@ -110,13 +110,16 @@ class MarginalLevelSearch(LevelSearch):
         self, elements: Elements, team: ChoosingTeam, incumbent: Incumbent, level: Callable[[], float], error: float
     ) -> None:
         super().__init__(elements, incumbent, level)
-        self._team, self._error = team, error
-        self._path, self._gains = Path(team.choosers, FIRST_RECORD), Gains(team.choosers.elements, SETS)
+        self._team, self._error, self._params = team, error, incumbent.params.marginals
+        self._path, self._gains = (
+            Path(team.choosers, self._params.room),
+            Gains(team.choosers.elements, self._params.sets),
+        )
 
     @property
     def is_long(self) -> bool:
         """True if the record is as long as memory should hold."""
-        return len(self.record) >= MOST_RECORDED
+        return len(self.record) >= self._params.recorded
 
     @property
     def record(self) -> IntArray:
@@ -124,8 +127,9 @@ class MarginalLevelSearch(LevelSearch):
         return np.asarray(self._path.nodes)
 
     def _search_on(self) -> Outcome:
-        team, slack = self._team, ROUNDINGS * self._error
-        return dive(team.choosers, team.attacks(), self._gains, self._path, level=self.level, slack=slack, nodes=RUN)
+        team, limits = self._team, {"nodes": self._params.run, "tried": self._params.tried}
+        slack = ROUNDINGS * self._error
+        return dive(team.choosers, team.attacks(), self._gains, self._path, level=self.level, slack=slack, **limits)
 
     def _plan(self) -> IntArray:
         plan = np.empty(len(self._team.order), dtype=np.int64)
@@ -173,14 +177,6 @@ class MarginalSearch(SearchByLevels):
         self._margin = (2 * elements.problem.n_robots + 1 + ROUNDINGS) * self._error
         self._team: ChoosingTeam | None = None
         self._proof: MarginalProof | None = None
-
-    @classmethod
-    def of(cls, known: Known, elements: Elements) -> MarginalSearch | None:
-        """The search if gains diminish, as those of log-determinants do, and there are not too many plans."""
-        diminish = known.task.objective.compiled_code == LogDetObjective.native_kernel
-        choices = elements.problem.choices
-        fits = len(choices) <= MOST_ROBOTS and np.prod([float(len(choice)) for choice in choices]) <= MOST_PLANS
-        return cls(known, elements) if diminish and fits else None
 
     def proof(self) -> UpperProof:
         """The proof of ``upper``."""

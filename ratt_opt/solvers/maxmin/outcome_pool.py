@@ -16,12 +16,9 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.graph.outcomes import Outcome
     from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.params import OutcomeListParams
 
 __all__ = ["OutcomePool"]
-
-LISTED_ROBOTS, LISTED_OUTCOMES = 12, 3000
-"""Most robots and outcomes for listing all non-dominated outcomes beforehand; of more, each node would value
-most in vain. Not measured."""
 
 
 class OutcomePool:
@@ -61,12 +58,12 @@ class OutcomePool:
         """Add an outcome that some attack has; the attack is found when it is needed."""
         return self._add(outcome, outcome)
 
-    def list_all(self) -> None:
+    def list_all(self, params: OutcomeListParams) -> None:
         """Add all non-dominated outcomes if there are few."""
-        if self.problem.n_robots > LISTED_ROBOTS or not self.problem.threat.is_symmetric:
+        if self.problem.n_robots > params.robots or not self.problem.threat.is_symmetric:
             return
-        outcomes = list(islice(non_dominated_outcomes(self.problem.threat), LISTED_OUTCOMES + 1))
-        if len(outcomes) <= LISTED_OUTCOMES:
+        outcomes = list(islice(non_dominated_outcomes(self.problem.threat), params.outcomes + 1))
+        if len(outcomes) <= params.outcomes:
             for outcome in outcomes:
                 self.add_outcome(outcome)
             self.complete = True

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.highs import LinearProgram, Rows, rows_of
-from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 
 if TYPE_CHECKING:
@@ -27,19 +26,10 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.rows.separation import RelaxedGroups
     from ratt_opt.solvers.maxmin.winners import Winners
 
-__all__ = ["CUTS_A_ROUND", "CutRounds", "RelaxedPlan"]
+__all__ = ["CutRounds", "RelaxedPlan"]
 
-# Nodes below: sums over four problems of ten robots and fifteen targets (trace, max-eigenvalue; gap 1e-6), 32 as it is.
-CUTS_A_ROUND = 8
-"""Groups cut in one round: fewer rounds against larger programs; 4 take 32 nodes, 16 take 30, in the same time."""
-TARGETS_A_CUT = 4
-"""Targets of one group that get a tangent each (max-eigenvalue); 1 and 8 take 32 nodes, in the same time."""
-PATIENCE = 8
-"""Solves without a multiplier after which a cut leaves the program; it stays stored. 2 take 34 nodes, 32 take 30."""
 VIOLATED = 1e-10
 """Share of the relaxed level by which a cut has to be lower to count as violated."""
-DEEP = 0.5
-"""Share of the depth of the deepest known cut that a stored one needs to be brought back; 0 and 0.9 take 30 nodes."""
 ROUNDING = 1e-12
 """Weights of elements up to this are the simplex method's rounding."""
 
@@ -166,7 +156,7 @@ class CutRounds:
     def __init__(self, cuts: CutStore, winners: Winners, adversary: Adversary, *, rows_from: float) -> None:
         self.task, self.pool = cuts.task, cuts.pool
         self.cuts, self.winners, self.adversary, self._rows_from = cuts, winners, adversary, rows_from
-        self._solves, self._params = 0, RowParams()
+        self._solves, self._params = 0, self.task.params.rows
         self._program = NodeProgram(self.task.objective.n, self.task.choices, self.task.problem.choice_limit)
 
     @property
@@ -187,13 +177,13 @@ class CutRounds:
         winners = self.winners.at(node)
         usable = self.cuts.usable(winners)
         self._program.drop(lambda k: not usable[k])
-        self._program.drop_idle(PATIENCE)
+        self._program.drop_idle(self.task.params.rounds.patience)
         if self._program.in_use:
             return
         best = np.array([choice[self.task.singles[choice].argmax()] for choice in node.choices])
         points = self.pool.group_points(self.task.objective.information[best])
         for outcome, winner in enumerate(winners.tolist()):
-            if winner >= 0 and len(self._program.in_use) < CUTS_A_ROUND:
+            if winner >= 0 and len(self._program.in_use) < self.task.params.rounds.cuts:
                 self.use(self.cuts.touching(outcome, winner, best, points[winner]))
 
     def solve(self, node: TreeNode) -> RelaxedPlan | None:
@@ -210,7 +200,7 @@ class CutRounds:
 
     def _begin_rows(self, node: TreeNode) -> None:
         """Let cuts be rows from now on, and leave tangents of whole groups out of the program."""
-        self.cuts.rows = RowSeparation(self.task, self.pool, self.adversary.budget, self._params)
+        self.cuts.rows = RowSeparation(self.task, self.pool, self.adversary.budget)
         self._program.drop(lambda _: True)
         self.begin(node)
 
@@ -272,7 +262,7 @@ class CutRounds:
         outcome_of: dict[int, int] = {}
         for outcome, winner in self._violated(node, groups.values, level):
             outcome_of.setdefault(winner, outcome)
-            if len(outcome_of) >= CUTS_A_ROUND:
+            if len(outcome_of) >= self.task.params.rounds.cuts:
                 break
         winners, added = list(outcome_of), False
         for winner, row in zip(winners, rows.rows(groups, winners, level - self.winners.plans.level), strict=True):
@@ -285,12 +275,12 @@ class CutRounds:
         """Bring back stored cuts that the relaxed plan violates by much of what a new cut could."""
         winners = self.winners.at(node)
         lowest = float(values[winners[winners >= 0]].min(initial=np.inf))
-        deepest = level - DEEP * max(level - lowest, 0.0)
+        deepest = level - self.task.params.rounds.deep * max(level - lowest, 0.0)
         bounds = self.cuts.bounds(selection)
         usable = self.cuts.usable(winners) & (bounds < deepest)
         usable[self._program.in_use] = False
         candidates = np.flatnonzero(usable)
-        for k in candidates[np.argsort(bounds[candidates], kind="stable")][:CUTS_A_ROUND].tolist():
+        for k in candidates[np.argsort(bounds[candidates], kind="stable")][: self.task.params.rounds.cuts].tolist():
             self.use(k)
         return len(candidates) > 0
 
@@ -299,13 +289,13 @@ class CutRounds:
         objective = self.task.objective
         cut_groups: set[int] = set()
         for outcome, winner in self._violated(node, values, level):
-            if len(cut_groups) >= CUTS_A_ROUND:
+            if len(cut_groups) >= self.task.params.rounds.cuts:
                 break
             if winner in cut_groups:
                 continue
             members = list(self.pool.groups[winner])
             point = np.asarray(objective.prior_information + of_robot[members].sum(axis=0))
-            for target in objective.tangent_targets(point, level, TARGETS_A_CUT):
+            for target in objective.tangent_targets(point, level, self.task.params.rounds.targets):
                 self.use(self.cuts.tangent(outcome, winner, point, target))
             cut_groups.add(winner)
         return bool(cut_groups)

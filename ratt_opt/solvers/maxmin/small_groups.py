@@ -30,13 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SmallGroups", "SmallTables"]
 
-WHOLE, PART = 600_000, 60_000
-"""Criteria of single targets that list a group's elements once and for all, and those left at a node that are listed
-there: about ten and one milliseconds for planar targets; the linear programs of a node take five to ten."""
-NOT_PLANAR = 10
-"""Relative cost of a criterion that has no closed form."""
-LARGEST_GROUP = 8
-"""Larger groups are never listed: when they could be, linear programs have decided them."""
 ROUNDING = 1e-11
 """Relative: values so little below a level are not counted on to be proved below it."""
 
@@ -59,10 +52,12 @@ class _Group:
     """Largest values of one group within the choices of a node."""
 
     def __init__(self, task: Task, members: tuple[int, ...]) -> None:
-        self.task, self.members = task, members
-        self._is_small = 0 < len(members) <= LARGEST_GROUP
-        self._cost = task.objective.n_targets * (1 if task.objective.dimension == 2 else NOT_PLANAR)
-        self._is_whole = self._is_small and self._cost * prod(len(task.choices[i]) for i in members) <= WHOLE
+        self.task, self.members, self._params = task, members, task.params.small_groups
+        self._is_small = 0 < len(members) <= self._params.largest
+        self._cost = task.objective.n_targets * (1 if task.objective.dimension == 2 else self._params.not_planar)
+        self._is_whole = (
+            self._is_small and self._cost * prod(len(task.choices[i]) for i in members) <= self._params.whole
+        )
         self._whole: FloatArray | None = None
         self._known: dict[tuple[int, ...], tuple[float, tuple[FloatArray, ...]]] = {}
 
@@ -70,7 +65,7 @@ class _Group:
         """The largest value, and per robot that with each of its elements; ``None`` if that is not listed."""
         if not self._is_small:
             return None
-        if not self._is_whole and self._cost * prod(domains.sizes[i] for i in self.members) > PART:
+        if not self._is_whole and self._cost * prod(domains.sizes[i] for i in self.members) > self._params.part:
             return None
         key = tuple(domains.numbers[i] for i in self.members)
         known = self._known.get(key)

@@ -18,22 +18,28 @@ from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.solve_by_values import solve_by_values
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
-from ratt_opt.solvers.maxmin.coverage import CoverageParams, CoverageTrace
+from ratt_opt.solvers.maxmin.coverage import CoverageTrace
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
 from ratt_opt.solvers.maxmin.known import Known
+from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.params import or_default
 from ratt_opt.solvers.maxmin.time_slices import TimeSlices
-from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio, monotone_bound
+from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.known import Progress
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
+    from ratt_opt.solvers.maxmin.stages.bound_stage import BoundStage
+    from ratt_opt.solvers.maxmin.turn import Progress
 
 __all__ = [
     "check_limits",
@@ -60,6 +66,7 @@ def solve_maxmin(
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     start: ArrayLike | Plan | MaxMinResult | None = None,
+    params: MaxMinParams | None = None,
 ) -> MaxMinResult:
     """Find the plan with the largest worst-case value, and prove how good it is.
 
@@ -80,6 +87,7 @@ def solve_maxmin(
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem, whose plan is used if the problem still allows it;
         what is enumerated needs none. Changes how long a search takes, not what it claims
+    params : of the algorithms: they decide how soon the bracket closes, not whether it holds
 
     Raises
     ------
@@ -90,18 +98,19 @@ def solve_maxmin(
     """
     check_limits(gap, time_limit, max_nodes)
     check_problem(problem, knows_at_most=True)
-    budget = Budget.inside(budget, time_limit, max_nodes, max_evaluations)
+    budget, params = Budget.inside(budget, time_limit, max_nodes, max_evaluations), or_default(params)
     if not isinstance(problem.objective, InformationObjective):
-        return solve_by_values(problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap))
+        return solve_by_values(problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap, params))
     searched = prepared(problem)
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
-    found = solve_in_coordinates(searched, budget, gap, told, alpha_cs, start).widen_by_rounding(searched)
+    found = solve_in_coordinates(searched, budget, gap, told, alpha_cs, start, params=params)
+    found = found.widen_by_rounding(searched)
     return replace(restored(searched, found), posterior_gap=posterior_gap(problem, found.lower, found.upper))
 
 
-def _solve_as_trace(problem: Problem, budget: Budget, gap: float) -> MaxMinResult | None:
+def _solve_as_trace(problem: Problem, budget: Budget, gap: float, all_params: MaxMinParams) -> MaxMinResult | None:
     """Bracket the optimum of a sum of best elements by that of a trace; ``None`` if there is none or values count."""
-    params = CoverageParams()
+    params = all_params.coverage
     trace = CoverageTrace.of(problem, params) if np.isinf(budget.evaluations_left) else None
     if trace is None:
         return None
@@ -109,7 +118,7 @@ def _solve_as_trace(problem: Problem, budget: Budget, gap: float) -> MaxMinResul
     if budget.max_nodes is not None:
         most = max(int(params.share * budget.nodes_left(budget.max_nodes)), 1)
     part = budget.part(params.share)
-    found = solve_maxmin(trace.problem, gap=trace.gap(gap), max_nodes=most, budget=part)
+    found = solve_maxmin(trace.problem, gap=trace.gap(gap), max_nodes=most, budget=part, params=all_params)
     budget.nodes += found.nodes
     return trace.carried_over(found)
 
@@ -122,26 +131,27 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     alpha_cs: int | None = None,
     start: ArrayLike | Plan | MaxMinResult | None = None,
     *,
-    in_depth: bool = True,
+    stages: Sequence[BoundStage] | None = None,
     by_rows: bool = True,
+    params: MaxMinParams | None = None,
 ) -> MaxMinResult:
     """Solve in the given coordinates, for an information criterion.
 
-    ``in_depth`` : whether the proof may be that of a search in depth
+    ``stages`` : of the upper end; those of the schedule if ``None``
     ``by_rows`` : whether its cuts may have inequalities of single targets in the place of tangents
     """
-    earlier = _plan_of(problem, start)
+    earlier, params = _plan_of(problem, start), or_default(params)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
     first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
     pool = OutcomePool(problem)
-    incumbent = Incumbent(problem, pool, first, budget)
+    incumbent = Incumbent(problem, pool, first, budget, params)
     search: UpperBoundPortfolio | None = None
     try:
-        pool.list_all()
+        pool.list_all(params.outcomes)
         incumbent.start(_first_plans(problem, first, earlier, budget))
         # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        known = Known.of(Task.of(problem), incumbent, max(gap - PROVED, 0.0), by_rows=by_rows)
-        search = UpperBoundPortfolio(known, in_depth=in_depth)
+        known = Known.of(Task.of(problem, params), incumbent, max(gap - PROVED, 0.0), by_rows=by_rows)
+        search = UpperBoundPortfolio(known, stages)
         stop = _search_and_prove(search, TimeSlices(budget, incumbent), progress)
         if incumbent.is_proved and not budget.is_over:
             break_ties(incumbent, budget)
@@ -231,10 +241,6 @@ def _is_number(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
-FEW_PLANS, ENUMERATION_SHARE = 300_000, 0.5
-"""Enumerate if there are at most this many plans and enumeration fits in this share of the remaining time."""
-
-
 @interruptible
 def nonrobust_optimum(
     problem: Problem,
@@ -263,19 +269,23 @@ def nonrobust_optimum(
 
 
 def nonrobust_search(
-    problem: Problem, *, time_limit: float | None = None, budget: Budget | None = None
+    problem: Problem,
+    *,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
+    params: MaxMinParams | None = None,
 ) -> MaxMinResult:
     """Bracket the best value when nobody attacks: :func:`solve_maxmin` with no budgets, or every plan if few.
 
     ``time_limit`` : seconds; the plan is proved best if ``stop`` is ``CLOSED``, ``GAP`` or ``EXHAUSTED``
     ``budget`` : an outer search's budget: its seconds and interrupts count too
     """
-    unattacked = replace(check_problem(problem, knows_at_most=True), alpha_s=0, alpha_c=0)
+    unattacked, params = replace(check_problem(problem, knows_at_most=True), alpha_s=0, alpha_c=0), or_default(params)
     own = Budget.inside(budget, time_limit)
     with np.errstate(over="ignore"):
-        few = np.prod([float(len(choice)) for choice in problem.choices]) <= FEW_PLANS
+        few = np.prod([float(len(choice)) for choice in problem.choices]) <= params.few_plans.plans
     if few and isinstance(problem.objective, InformationObjective):
-        found = exhaustive_optimum(unattacked, budget=own.part(ENUMERATION_SHARE))
+        found = exhaustive_optimum(unattacked, budget=own.part(params.few_plans.share))
         if found.stop is Stop.EXHAUSTED:
             return found
-    return solve_maxmin(unattacked, budget=own)
+    return solve_maxmin(unattacked, budget=own, params=params)

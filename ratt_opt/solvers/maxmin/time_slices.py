@@ -14,16 +14,13 @@ if TYPE_CHECKING:
 
 __all__ = ["TimeSlices", "TimeSlicesUntil"]
 
-SEARCH_SHARE = 0.25
-"""Share of the time left that is searched before an unproved plan is attacked exactly."""
-
 
 class TimeSlices:
     """Clock of a search: it stops for good, or to prove the best plan's value."""
 
     def __init__(self, budget: Budget, incumbent: Incumbent) -> None:
         self.budget, self.incumbent = budget, incumbent
-        self._slice = budget.part(SEARCH_SHARE)
+        self._slice = budget.part(incumbent.params.incumbent.searched)
 
     @property
     def seconds_left(self) -> float:
@@ -45,7 +42,7 @@ class TimeSlices:
     def prove(self) -> bool:
         """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
         goes_on = self.incumbent.prove()
-        self._slice = self.budget.part(SEARCH_SHARE)
+        self._slice = self.budget.part(self.incumbent.params.incumbent.searched)
         return goes_on
 
 

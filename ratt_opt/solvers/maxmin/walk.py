@@ -22,14 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Walk"]
 
-FEWEST = 2
-"""Robots that take another element in a kick; up to a third of the team do."""
-SOFTNESS = 0.01
-"""Share of the best value: what an attack leaves more by it counts e times less in the mean. At 10 robots 0.003 to 0.03
-do as well; without it half of the teams end a tenth below the best plan."""
-WORSE, RETURN = 0.01, 50
-"""Share of the best value that a step may lose, and kicks in vain after which the best plan is gone back to."""
-
 
 class Walk:
     """A walk from plan to plan, each kicked from the one before and climbed from; the best one is attacked exactly."""
@@ -50,9 +42,10 @@ class Walk:
     def _step(self, budget: Budget) -> None:
         """Go where a kick leads, unless that is much worse; from the best plan again after some kicks in vain."""
         incumbent, candidates = self._incumbent, self._incumbent.candidates
-        softness = SOFTNESS * abs(candidates.level)
-        most = max(FEWEST, len(self._plan) // 3)
-        robots = int(self._rng.integers(FEWEST, most + 1)) if len(self._plan) > 1 else 1
+        params = incumbent.params.walk
+        softness = params.softness * abs(candidates.level)
+        most = max(params.fewest, len(self._plan) // 3)
+        robots = int(self._rng.integers(params.fewest, most + 1)) if len(self._plan) > 1 else 1
         plan = self._kicked(robots)
         plan = climb(incumbent.problem, incumbent.pool, plan, budget, softness)
         plan = climb(incumbent.problem, incumbent.pool, plan, budget)
@@ -60,9 +53,9 @@ class Walk:
         if incumbent.offer(plan):
             self._in_vain = 0
         value = incumbent.pool.plan_value(plan)
-        if value >= incumbent.pool.plan_value(self._plan) - WORSE * abs(candidates.level):
+        if value >= incumbent.pool.plan_value(self._plan) - params.worse * abs(candidates.level):
             self._plan = plan
-        if self._in_vain % RETURN == 0:
+        if self._in_vain % params.back == 0:
             self._plan = candidates.best
 
     def _kicked(self, robots: int) -> IntArray:

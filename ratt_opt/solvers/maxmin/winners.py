@@ -31,10 +31,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ClosedGroup", "GroupProofs", "Winners", "close_group"]
 
-STEPS = 6
-"""Frank-Wolfe steps towards the best mixture of a node. 3 and 12 lead to as many search nodes in teams of ten."""
-LARGEST_PROOF = 300
-"""Cuts after which the attempt is given up."""
 UNKNOWN, UNDECIDED = -2, -1
 
 
@@ -68,7 +64,7 @@ def close_group(
 
 class _ClosingSearch:
     def __init__(self, task: Task, members: tuple[int, ...], rule: ClosingRule, budget: Budget) -> None:
-        self.problem, self.objective = task.problem, task.objective
+        self.problem, self.objective, self.params = task.problem, task.objective, task.params.group_proofs
         self.members, self.rule, self.budget = members, rule, budget
         self.inside = np.isin(np.arange(task.problem.n_robots), members)
         self.cuts = 0
@@ -80,7 +76,7 @@ class _ClosingSearch:
         own = tuple(choices[i] for i in self.members)
         plan = np.array([choice[0] for choice in own], dtype=np.int64)
         selection = np.zeros(self.objective.n)
-        for step in range(STEPS):
+        for step in range(self.params.steps):
             share = 2 / (step + 2)
             selection *= 1 - share
             selection[plan] += share
@@ -96,7 +92,7 @@ class _ClosingSearch:
                 return ClosedGroup(bound=bound, cut=cut)
             plan = self._best(scores, choices)
             value = float(self.objective.value(self.objective.posterior_information(plan)[None])[0])
-            if not self.rule.closes(value) or self.cuts > LARGEST_PROOF:
+            if not self.rule.closes(value) or self.cuts > self.params.cuts:
                 raise _RefutedError
         return self._divide(choices, selection, point, cut.target)
 

@@ -8,24 +8,22 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt import Attack, Stop
+from ratt_opt import Attack, MaxMinParams, Stop
 from ratt_opt.solvers import exhaustive, ratt
 from ratt_opt.solvers.by_values import plan_tree
-from ratt_opt.solvers.maxmin import (
-    adversary,
-    marginal_search,
-    outcome_pool,
-    small_groups,
-    solve,
-    upper_bound_portfolio,
-)
-from ratt_opt.solvers.maxmin.covers import cover_search, dive
+from ratt_opt.solvers.maxmin import adversary, solve
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
+from ratt_opt.solvers.maxmin.restarts import RestartedSearch
+from ratt_opt.solvers.maxmin.stages import schedule
+from ratt_opt.solvers.maxmin.stages.concave_trees import ConcaveTreesStage
+from ratt_opt.solvers.maxmin.stages.covers import CoversStage
+from ratt_opt.solvers.maxmin.stages.marginal_gains import MarginalGainsStage
 
 if TYPE_CHECKING:
     import pytest
 
     from ratt_opt import MaxMinResult
+    from ratt_opt.solvers.maxmin.known import Known
     from tests.ways import Way
 
 __all__ = [
@@ -50,7 +48,7 @@ __all__ = [
     "trees_begun",
 ]
 
-NO_PLANS_LISTED: Way = {(exhaustive, "LARGEST_SEARCH"): 0, (solve, "FEW_PLANS"): 0}
+NO_PLANS_LISTED: Way = {(exhaustive, "LARGEST_SEARCH"): 0, (MaxMinParams, "few_plans.plans"): 0}
 """Plans are searched, however few they are."""
 
 
@@ -62,37 +60,44 @@ TRACE_INTERRUPTED: Way = {(solve, "_solve_as_trace"): _interrupted}
 """The search of coverage as a trace is interrupted as it begins."""
 LAZY: Way = {(ratt, "PLAIN_WORK"): -1}
 """Greedy choices are bounded by earlier marginal gains, however few they are."""
-UNLISTED: Way = {(outcome_pool, "LISTED_ROBOTS"): 0}
+UNLISTED: Way = {(MaxMinParams, "outcomes.robots"): 0}
 """Outcomes are not listed beforehand, as for large teams."""
-LISTED: Way = {(outcome_pool, "LISTED_ROBOTS"): 12}
-EXCHANGED: Way = {(adversary, "SEARCHED_BY_SIZE"): 0}
+LISTED: Way = {(MaxMinParams, "outcomes.robots"): 12}
+EXCHANGED: Way = {(MaxMinParams, "adversary.small"): 0}
 """Known outcomes are exchanged, as for large teams."""
 BLIND: Way = EXCHANGED | {(adversary.Adversary, "_quick_attack"): lambda *_: Attack()}
 """Quick attacks see nothing: only exact ones tell good plans from bad."""
-NO_GROUPS: Way = {(small_groups, "LARGEST_GROUP"): 0}
+NO_GROUPS: Way = {(MaxMinParams, "small_groups.largest"): 0}
 """Nothing is known of small groups beforehand."""
-TREES_SOON: Way = {(upper_bound_portfolio, "FIRST_NODES"): 1, (upper_bound_portfolio, "NEARLY"): 0.0}
+TREES_SOON: Way = {(MaxMinParams, "restarts.first"): 1, (MaxMinParams, "restarts.nearly"): 0.0}
 """Further trees come soon, as where searches of large teams are long."""
-SMALL_TREES: Way = TREES_SOON | {(upper_bound_portfolio, "TREE_NODES"): 2}
+SMALL_TREES: Way = TREES_SOON | {(MaxMinParams, "restarts.later"): 2}
 
-_HOWEVER_MUCH_ROBOTS_SEE: Way = {
-    (upper_bound_portfolio.UpperBoundPortfolio, "_run_concave"): lambda *_: Stop.NODES,
-    (upper_bound_portfolio, "UNSEEN"): 0.0,
-}
-COVERS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(marginal_search.MarginalSearch, "of"): lambda *_: None}
-MARGINALS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(cover_search.CoverSearch, "of"): lambda *_: None}
+
+class _RootStage(ConcaveTreesStage):
+    """Trees whose root has a bound and which never go on."""
+
+    def begin(self, known: Known) -> RestartedSearch:
+        """Begin a search that spends no node."""
+        search = RestartedSearch(known)
+        search.run = lambda _: Stop.NODES  # type: ignore[method-assign]
+        return search
+
+
+_HOWEVER_MUCH_ROBOTS_SEE: Way = {(MaxMinParams, "depth.unseen"): 0.0}
+COVERS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(schedule, "BOUND_STAGES"): (_RootStage(), CoversStage())}
+MARGINALS_ALONE: Way = _HOWEVER_MUCH_ROBOTS_SEE | {(schedule, "BOUND_STAGES"): (_RootStage(), MarginalGainsStage())}
 """No other search raises or lowers an upper end, however much robots see."""
 
 
 def covers(**limits: int) -> Way:
-    """Limits of the search by covers: ``most_covers`` kept, ``most_recorded`` nodes of a dive."""
-    places = {"most_covers": (cover_search, "MOST_COVERS"), "most_recorded": (dive, "MOST_RECORDED")}
-    return {places[name]: value for name, value in limits.items()}
+    """Limits of the search by covers: ``covers`` kept, ``recorded`` nodes of a dive."""
+    return {(MaxMinParams, f"covers.{name}"): value for name, value in limits.items()}
 
 
 def marginals(**limits: int) -> Way:
-    """Limits of the search by marginal gains, by their names in small letters."""
-    return {(marginal_search, name.upper()): value for name, value in limits.items()}
+    """Limits of the search by marginal gains."""
+    return {(MaxMinParams, f"marginals.{name}"): value for name, value in limits.items()}
 
 
 def open_nodes(most: int) -> Way:
@@ -109,13 +114,11 @@ def trees_begun(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """The number of nodes at which each further tree begins from now on."""
     begun: list[int] = []
 
-    def begin_next(
-        search: upper_bound_portfolio.RestartedSearch, plain=upper_bound_portfolio.RestartedSearch._begin_next
-    ) -> None:
+    def begin_next(search: RestartedSearch, plain=RestartedSearch._begin_next) -> None:
         begun.append(search.first.incumbent.budget.nodes)
         plain(search)
 
-    monkeypatch.setattr(upper_bound_portfolio.RestartedSearch, "_begin_next", begin_next)
+    monkeypatch.setattr(RestartedSearch, "_begin_next", begin_next)
     return begun
 
 

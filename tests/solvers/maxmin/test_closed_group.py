@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.winners import close_group
 from tests.strategies import OBJECTIVES, random_problem
 
@@ -16,7 +17,7 @@ from tests.strategies import OBJECTIVES, random_problem
 def test_a_proof_is_not_gone_on_with_once_the_time_is_up(kind):
     """Of 500 robots and 150 targets a best plan's search of 10 s went on with one for 16 s more."""
     problem = random_problem(np.random.default_rng(0), 5, kind=kind, complete=True)
-    task, asked = SimpleNamespace(problem=problem, objective=problem.objective), []
+    task, asked = Task.of(problem), []
     budget = Budget()
 
     def closes(bound):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.solvers.maxmin.coverage import CoverageParams, CoverageTrace
+from ratt_opt.solvers.maxmin.coverage import CoverageTrace
+from ratt_opt.solvers.maxmin.params import CoverageParams
 
 
 def drawn_sum(rng: np.random.Generator, n: int, parts: int) -> ro.Coverage | ro.FacilityLocation:

@@ -19,17 +19,18 @@ from ratt_opt import (
     worst_case_attack,
 )
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.solvers.maxmin import incumbent
 from ratt_opt.solvers.maxmin.adversary import Adversary
 from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.params import IncumbentParams, MaxMinParams
 
 NODES = 40
 """Few: an attack on teams of this size takes thousands."""
 
 
-def started(problem: Problem, first: np.ndarray) -> Incumbent:
-    return Incumbent(problem, OutcomePool(problem), first, Budget(time_limit=3600.0))
+def started(problem: Problem, plan: np.ndarray, **shares: float) -> Incumbent:
+    params = MaxMinParams(incumbent=IncumbentParams(**shares))
+    return Incumbent(problem, OutcomePool(problem), plan, Budget(time_limit=3600.0), params)
 
 
 @pytest.mark.parametrize(("robots", "blinded", "cut"), [(40, 13, 195), (40, 1, 600), (60, 19, 442)])
@@ -41,12 +42,11 @@ def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_n
     first = ratt(problem).elements
     alone = worst_case_attack(problem, first, max_nodes=NODES, brief=True)
     at_once = worst_case_attack(problem, first, max_nodes=0, brief=True)
-    search = started(problem, first)
+    search = started(problem, first, first_nodes=NODES)
 
     def no_time(*_: object) -> None:
         raise OutOfBudget(Stop.TIME)
 
-    monkeypatch.setattr(incumbent, "FIRST_PROOF", NODES)
     monkeypatch.setattr(search, "improve", no_time)
     with pytest.raises(OutOfBudget):
         search.start([first])
@@ -56,9 +56,7 @@ def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_n
 
 @pytest.mark.parametrize("criterion", ["trace", "logdet", "maxeig"])
 @pytest.mark.parametrize("family", ["complete", "dense", "hubs"])
-def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(
-    family: str, criterion: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(family: str, criterion: str) -> None:
     """At once more can be known of another plan than a brief attack on RATT's proves."""
     if family == "complete":
         scenario = random_scenario(60, 8, alpha_s=12, alpha_c=531, seed=1)
@@ -67,8 +65,7 @@ def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(
     problem = scenario.problem(criterion)
     plans = [planner(problem).elements for planner in (ratt, greedy, myopic)]
     at_once = [worst_case_attack(problem, plan, time_limit=0).lower for plan in plans]
-    search = started(problem, plans[0])
-    monkeypatch.setattr(incumbent, "FIRST_SHARE", 0.0)
+    search = started(problem, plans[0], first=0.0)
     search.budget.time_limit = 0.0
     search.start(plans)
     best = int(np.argmax(at_once))
@@ -154,7 +151,7 @@ def test_on_a_network_the_plan_that_more_is_proved_of_gets_the_rest(
     assert search.proved.lower >= 0.95 * known
     level = search.candidates.level
     lower = ends[0][1] * known
-    assert attacks.aims[1] == pytest.approx(level - incumbent.LEFT_EARLY * (level - lower))
+    assert attacks.aims[1] == pytest.approx(level - IncumbentParams().left_early * (level - lower))
     assert attacks.aims[0] == problem.objective([])
 
 

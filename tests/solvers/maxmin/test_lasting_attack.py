@@ -45,7 +45,7 @@ def at_their_best(problem: Problem) -> Callable[[Iterable[int]], float]:
 def test_the_smaller_groups_are_the_weakest_there_are(kind: str, alpha_s: int, alpha_c: int) -> None:
     problem = random_scenario(10, 6, alpha_s=alpha_s, alpha_c=alpha_c, seed=2).problem(kind)
     best = at_their_best(problem)
-    lasting = PlanIndependentAttacks(problem, Budget())
+    lasting = PlanIndependentAttacks(problem, Budget(), 0.05)
     rng = np.random.default_rng(0)
     for _ in range(6):
         attack = worst_case_attack(problem, random_elements(rng, problem)).attack
@@ -66,4 +66,4 @@ def test_nothing_is_exchanged_where_robots_differ_to_the_adversary() -> None:
     calm = random_scenario(6, 3, alpha_s=1, alpha_c=5, seed=0).problem()
     guarded = Problem(calm.objective, calm.robot, None, 1, 5, frozenset({0}))
     attack = worst_case_attack(guarded, random_elements(np.random.default_rng(0), guarded)).attack
-    assert PlanIndependentAttacks(guarded, Budget()).of(attack) is attack
+    assert PlanIndependentAttacks(guarded, Budget(), 0.05).of(attack) is attack

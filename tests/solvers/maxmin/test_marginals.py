@@ -83,14 +83,14 @@ def test_a_limit_of_nodes_leaves_a_true_bracket(most: int, monkeypatch: pytest.M
 
 
 def test_searches_whose_record_is_long_are_given_up(monkeypatch: pytest.MonkeyPatch):
-    go(monkeypatch, marginals(run=3, most_recorded=8))
+    go(monkeypatch, marginals(run=3, recorded=8))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 10]), "logdet")
         check_bracket(problem, solve_maxmin(problem, max_nodes=100), brute_force_optimum(problem))
 
 
 def test_a_record_that_grows_is_complete(monkeypatch: pytest.MonkeyPatch):
-    go(monkeypatch, marginals(run=3, first_record=4))
+    go(monkeypatch, marginals(run=3, room=4))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
         check_bracket(problem, solve_maxmin(problem), brute_force_optimum(problem))
@@ -98,7 +98,7 @@ def test_a_record_that_grows_is_complete(monkeypatch: pytest.MonkeyPatch):
 
 @pytest.mark.parametrize("tried", [0, 1])
 def test_few_attacks_at_a_node_cost_time_only(tried: int, monkeypatch: pytest.MonkeyPatch):
-    go(monkeypatch, marginals(most_tried=tried))
+    go(monkeypatch, marginals(tried=tried))
     for seed in range(CASES // 3):
         problem = sparse_problem(np.random.default_rng([seed, 2, 8]), "logdet")
         optimum, found = brute_force_optimum(problem), solve_maxmin(problem)

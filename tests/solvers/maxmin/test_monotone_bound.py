@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import Attack, certify, exhaustive_optimum, random_scenario, solve_maxmin
-from ratt_opt.solvers.maxmin.upper_bound_portfolio import monotone_bound
+from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from tests.oracles import brute_force_optimum, groups_left
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem

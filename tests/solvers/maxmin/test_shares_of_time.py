@@ -6,9 +6,10 @@ import pytest
 
 from ratt_opt import Problem, random_scenario, ratt, solve_maxmin, worst_case_attack
 from ratt_opt.budget import Budget
-from ratt_opt.solvers.maxmin.adversary import QUICK_SHARE, PlanIndependentAttacks
-from ratt_opt.solvers.maxmin.incumbent import IMPROVED_SHARE, Incumbent
+from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
+from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.params import AdversaryParams, IncumbentParams
 from tests.attack.engine import exchanges_near, first_attack
 from tests.brackets import attains
 
@@ -37,7 +38,7 @@ def test_exchanges_next_to_known_outcomes_have_a_share(search: Incumbent, monkey
     exchanges_near(monkeypatch, near)
     search.adversary.learn(search.candidates.first)
     assert len(limits) == 1
-    assert limits[0] <= QUICK_SHARE * SECONDS
+    assert limits[0] <= AdversaryParams().quick * SECONDS
 
 
 def test_attacks_on_one_offered_plan_have_a_share(search: Incumbent, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -55,7 +56,7 @@ def test_attacks_on_one_offered_plan_have_a_share(search: Incumbent, monkeypatch
     monkeypatch.setattr(search.adversary, "learn", learns)
     monkeypatch.setattr(search.candidates, "is_better", lambda _: True)
     search.offer(search.candidates.first)
-    assert shares == [IMPROVED_SHARE]
+    assert shares == [IncumbentParams().improved]
     assert next(calls) == 2
 
 
@@ -86,7 +87,7 @@ def test_attacks_that_last_are_left_out_where_they_take_long(
     """The 368 groups of one attack took all of ten seconds."""
     problem, plan = search.problem, search.candidates.first
     attack = worst_case_attack(problem, plan).attack
-    lasting = PlanIndependentAttacks(problem, search.budget)
+    lasting = PlanIndependentAttacks(problem, search.budget, 0.05)
     monkeypatch.setattr(Budget, "part", lambda *_: Budget(time_limit=0.0))
     assert lasting.of(attack) is attack
     monkeypatch.undo()

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.solvers.maxmin.covers.choices import MOST_CHOICES
 from ratt_opt.solvers.maxmin.covers.dive import BY_COVER, BY_SUM, CoverSums, Dive, DiveProof
 from ratt_opt.solvers.maxmin.covers.pool import cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
@@ -33,22 +32,10 @@ if TYPE_CHECKING:
 
 __all__ = ["CoverSearch"]
 
-RUN = 100
-"""Nodes between two looks at the clock and at the linear program: ten milliseconds with ten robots."""
-ROUNDS_AT_ROOT, ROUNDS = 60, 4
-"""Rounds of covers on one relaxed plan."""
-CLOSED = 2e-6
-"""Least shortfall of all plans for a sum that is worth keeping."""
 NEGLIGIBLE = 1e-6
 """Shares that count as none."""
-MOST_COVERS = 20_000
-"""Covers that are known at once: a node looks at all of them."""
-LOWEST = -50.0
-"""Lower limit of ``v``: conditions met by more than this count no further."""
 NO_MULTIPLIER = 1e-9
 """Multipliers that count as none."""
-MOST_ROWS = 400
-"""Rows of the program; beyond it, half of the covers go that no multiplier used for longest."""
 
 
 class Relaxed:
@@ -67,12 +54,13 @@ class CoverProgram:
     """
 
     def __init__(self, separation: Separation) -> None:
+        self._params = separation.params.covers
         self.enough, self._count, self._pool = separation.enough, separation.count, separation.pool
         self._n, problem = len(self._count), separation.problem
         cost = np.zeros(self._n + 1)
         cost[-1] = 1.0
         lower = np.zeros(self._n + 1)
-        lower[-1] = LOWEST
+        lower[-1] = -self._params.lowest
         upper = np.ones(self._n + 1)
         upper[-1] = np.inf
         one_each = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in problem.choices], 1.0, 1.0)
@@ -127,7 +115,7 @@ class CoverProgram:
         return np.asarray(self._pool.left_out(cover) * self._count)
 
     def _forget(self) -> None:
-        if len(self._rows) <= MOST_ROWS:
+        if len(self._rows) <= self._params.rows:
             return
         order = sorted(range(len(self._rows)), key=lambda r: self._used[self._rows[r]])
         gone = np.array(sorted(order[: len(order) // 2]))
@@ -142,9 +130,9 @@ class CoverLevelSearch(LevelSearch):
         self, elements: Elements, separation: Separation, incumbent: Incumbent, level: Callable[[], float]
     ) -> None:
         super().__init__(elements, incumbent, level)
-        self._separation = separation
+        self._separation, self._params = separation, separation.params.covers
         self._program = CoverProgram(separation)
-        self.sums = CoverSums(elements.problem.objective.n)
+        self.sums = CoverSums(elements.problem.objective.n, self._params)
         self.dive = Dive(separation, self.sums)
 
     @property
@@ -153,10 +141,10 @@ class CoverLevelSearch(LevelSearch):
         return self.dive.is_long
 
     def _begin(self, slices: TimeSlices) -> None:
-        self._ask(0, slices, ROUNDS_AT_ROOT)
+        self._ask(0, slices, self._params.rounds_at_root)
 
     def _search_on(self) -> Outcome:
-        return self.dive.run(self.level, RUN)
+        return self.dive.run(self.level, self._params.run)
 
     def _plan(self) -> IntArray:
         return self.dive.plan()
@@ -170,7 +158,7 @@ class CoverLevelSearch(LevelSearch):
         first, last = 0, self.dive.frame
         while first < last:
             middle = (first + last) // 2
-            if self._ask(middle, slices, ROUNDS):
+            if self._ask(middle, slices, self._params.rounds):
                 last = middle
             else:
                 first = middle + 1
@@ -185,11 +173,16 @@ class CoverLevelSearch(LevelSearch):
             if relaxed is None:
                 return False
             lacking, terms = self._program.lacking(relaxed, allowed)
-            if lacking > CLOSED:
+            if lacking > self._params.shortfall:
                 self.sums.add(relaxed.covers, relaxed.weights, terms)
                 return True
             if not self._program.add(
-                pool.violated(relaxed.x * self._separation.count, self._program.enough, self.level)
+                pool.violated(
+                    relaxed.x * self._separation.count,
+                    self._program.enough,
+                    self.level,
+                    self._separation.params.separation.violated,
+                )
             ):
                 found = self._separation.violated(relaxed.x, self.level, self._program.enough)
                 if not self._program.add(found) and not self._cut_otherwise(relaxed.x):
@@ -212,14 +205,8 @@ class CoverSearch(SearchByLevels):
 
     def __init__(self, known: Known, elements: Elements) -> None:
         super().__init__(known, elements)
-        self._separation = Separation(elements.problem)
+        self._separation = Separation(elements.problem, known.task.params)
         self._proof: DiveProof | None = None
-
-    @classmethod
-    def of(cls, known: Known, elements: Elements) -> CoverSearch | None:
-        """The search, unless a robot has more elements than its masks hold."""
-        fits = max(map(len, elements.problem.choices)) <= MOST_CHOICES
-        return cls(known, elements) if fits else None
 
     def proof(self) -> UpperProof:
         """The proof of ``upper``."""
@@ -231,8 +218,9 @@ class CoverSearch(SearchByLevels):
 
     def _make_room(self) -> None:
         """Forget old covers, and the searches that know them, if there are too many."""
-        if len(self._separation.pool) > MOST_COVERS:
-            self._separation.pool.keep_latest(MOST_COVERS // 4)
+        most = self._separation.params.covers.covers
+        if len(self._separation.pool) > most:
+            self._separation.pool.keep_latest(most // 4)
             self._searches.clear()
         super()._make_room()
 

@@ -17,21 +17,14 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
     from ratt_opt.solvers.maxmin.covers.separation import Separation
     from ratt_opt.solvers.maxmin.elements import Elements
+    from ratt_opt.solvers.maxmin.params import CoverSearchParams
     from ratt_opt.solvers.maxmin.proof import Cover
 
 __all__ = ["BY_COVER", "BY_SUM", "CoverSums", "Dive", "DiveProof"]
 
 BY_COVER, BY_SUM, TRIED = 0, 1, 2
 """Reason that forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
-FIRST_RECORD, MOST_RECORDED = 4096, 4_000_000
-"""Nodes of a record: it grows, to 160 MB at most."""
-MOST_WAYS = 10
-"""Partitions that are tried at a node, those that last led to a dead end first."""
 FIRST_ROOM = 64
-MOST_TRIED = 60
-"""Sums that are looked at: those that were of most use lately."""
-FADING = 0.9
-"""Weight of earlier use when a sum is used again."""
 
 
 class Stack:
@@ -119,7 +112,8 @@ class Sums:
 class CoverSums:
     """Sums by number, with the leaf that each stands for."""
 
-    def __init__(self, elements: int) -> None:
+    def __init__(self, elements: int, params: CoverSearchParams) -> None:
+        self._params = params
         self._elements, self._terms, self._used = elements, np.zeros((FIRST_ROOM, elements)), np.zeros(FIRST_ROOM)
         self.leaves: list[CoverLeaf] = []
 
@@ -130,13 +124,13 @@ class CoverSums:
             self._terms = np.concatenate([self._terms, np.zeros_like(self._terms)])
             self._used = np.concatenate([self._used, np.zeros_like(self._used)])
         self._terms[number] = terms
-        self._used *= FADING
+        self._used *= self._params.fading
         self._used[number] = self._used.max() + 1.0
         self.leaves.append(CoverLeaf(covers=tuple(covers.tolist()), weights=tuple(weights.tolist())))
 
     def rows(self) -> Sums:
         """Return the sums of most use, in the form that the compiled dive reads."""
-        tried = np.argsort(-self._used[: len(self.leaves)], kind="stable")[:MOST_TRIED]
+        tried = np.argsort(-self._used[: len(self.leaves)], kind="stable")[: self._params.sums]
         return Sums(self._elements, self._terms, tried.astype(np.int64), self._used)
 
 
@@ -145,7 +139,8 @@ class Dive:
 
     def __init__(self, separation: Separation, sums: CoverSums) -> None:
         self._separation, self._sums, self._choices = separation, sums, separation.choices
-        self.record, self._stack = DiveRecord(FIRST_RECORD), Stack(separation.choices)
+        self._params = separation.params.covers
+        self.record, self._stack = DiveRecord(self._params.room), Stack(separation.choices)
 
     @property
     def frame(self) -> int:
@@ -155,7 +150,7 @@ class Dive:
     @property
     def is_long(self) -> bool:
         """True if the record is as long as memory should hold."""
-        return self.record.size >= MOST_RECORDED
+        return self.record.size >= self._params.recorded
 
     def run(self, level: float, nodes: int) -> Outcome:
         """Search on; how that ended. Makes room in what is full first."""
@@ -164,7 +159,7 @@ class Dive:
         self.record.make_room(self._choices.elements.count + 1)
         outcome = c_int(Outcome.SPENT)
         tables = self._choices.record, ways.record, pool.record, sums.record, self._stack.record, self.record.record
-        if loops.dive_by_covers(*tables, level, nodes, MOST_WAYS, byref(outcome)):
+        if loops.dive_by_covers(*tables, level, nodes, self._params.ways, byref(outcome)):
             raise MemoryError
         return Outcome(outcome.value)
 

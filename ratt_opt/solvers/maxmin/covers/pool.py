@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 __all__ = ["CoverPool", "cover_bound"]
 
 FIRST_ROOM, GROWTH = 256, 2
-MOST_VIOLATED = 8
 NEGLIGIBLE = 1e-6
 
 
@@ -118,12 +117,15 @@ class CoverPool:
         """(E,) which elements a cover leaves out."""
         return self._choices.in_masks(self.masks[cover])
 
-    def violated(self, price: FloatArray, enough: float, level: float) -> list[int]:
-        """Covers, true for a level, of which less than ``enough`` is paid, the worst first; ``price`` : (E,) paid."""
+    def violated(self, price: FloatArray, enough: float, level: float, most: int) -> list[int]:
+        """The ``most`` worst covers, true for a level, of which less than ``enough`` is paid.
+
+        ``price`` : (E,) paid
+        """
         self._count()
         counted = self._dense[: len(self)] @ price
         found = np.flatnonzero((counted < enough - NEGLIGIBLE) & (self.level[: len(self)] <= level))
-        return [int(k) for k in found[np.argsort(counted[found], kind="stable")][:MOST_VIOLATED]]
+        return [int(k) for k in found[np.argsort(counted[found], kind="stable")][:most]]
 
     def keep_latest(self, count: int) -> None:
         """Forget all but the covers that were found last; they are numbered anew."""

@@ -17,6 +17,7 @@ from ratt_opt.setfunctions.information import from_triangles
 from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
 from ratt_opt.solvers.maxmin.covers.pool import CoverPool
 from ratt_opt.solvers.maxmin.elements import padded
+from ratt_opt.solvers.maxmin.params import or_default
 from ratt_opt.solvers.maxmin.proof import Cover
 
 if TYPE_CHECKING:
@@ -27,15 +28,10 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.elements import Elements
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
 __all__ = ["Partitions", "Separation", "Ways"]
 
-MOST_LISTED = 500
-"""Partitions that are listed: each is priced in every round."""
-GROWN, ADDED = 16, 8
-"""Partitions of lowest price whose kept elements are completed in a round, and covers that a round adds at most."""
-NOISE = 0.2
-"""Relative noise on the order in which targets are lost, so that rounds on the same relaxed plan differ."""
 NEGLIGIBLE = 1e-6
 """Violations that count as none."""
 
@@ -77,11 +73,11 @@ class Ways:
 class Partitions:
     """Partitions of all robots, blinded or not, that cutting at most ``alpha_c`` links leaves.
 
-    ``groups`` : all different groups; ``of`` : the groups of each partition, by their numbers
+    ``groups`` : all different groups; ``of`` : the groups of each partition, by their numbers; ``most`` : are listed
     """
 
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
+    def __init__(self, problem: Problem, most: int) -> None:
+        self.problem, self._most = problem, most
         self.groups: list[tuple[int, ...]] = []
         self.of: list[IntArray] = []
         self._looked = 0
@@ -92,7 +88,7 @@ class Partitions:
         if threat.alpha_c == 0 or threat.links_alike:
             return
         if problem.n_robots <= LARGEST_ENUMERATION:
-            for partition in islice(finest_partitions(threat), MOST_LISTED):
+            for partition in islice(finest_partitions(threat), most):
                 self.add(robots_of(mask) for mask in partition)
 
     def add_cut(self, links: Iterable[Link]) -> int:
@@ -102,7 +98,7 @@ class Partitions:
     def add_cuts_of(self, pool: OutcomePool) -> bool:
         """Add what the attacks of a pool leave that were not looked at yet; whether that is new."""
         before = len(self.of)
-        while self._looked < len(pool) and len(self.of) < MOST_LISTED:
+        while self._looked < len(pool) and len(self.of) < self._most:
             self.add_cut(pool.attack(self._looked).links)
             self._looked += 1
         return len(self.of) > before
@@ -134,9 +130,10 @@ class Partitions:
 class Separation:
     """Separation of covers of one problem for any level; they go into its ``pool``."""
 
-    def __init__(self, problem: Problem) -> None:
-        self.problem, self.choices = problem, CoverChoices.of(problem)
-        self.partitions, self.pool = Partitions(problem), CoverPool(self.choices)
+    def __init__(self, problem: Problem, params: MaxMinParams | None = None) -> None:
+        self.problem, self.choices, self.params = problem, CoverChoices.of(problem), or_default(params)
+        self._params = self.params.separation
+        self.partitions, self.pool = Partitions(problem, self._params.listed), CoverPool(self.choices)
         self._rng = np.random.default_rng(0)
         self.enough = self.choices.enough
         self.count = self.choices.count[self.choices.owner]
@@ -167,12 +164,13 @@ class Separation:
         """Covers for a level of which a relaxed plan ``x`` (E,) counts less than ``most``, the worst first."""
         self._update()
         price = x * self.count
-        noise = self._rng.uniform(1 - NOISE, 1 + NOISE, self._values.shape)
+        params = self._params
+        noise = self._rng.uniform(1 - params.noise, 1 + params.noise, self._values.shape)
         paid, kept = self.choices.lose(self._inside, price, self._values, level, noise)
         totals = np.array([paid[own].sum() for own in self.partitions.of])
         completed: dict[int, FloatArray] = {}
         found = []
-        for p in np.argsort(totals, kind="stable")[:GROWN].tolist():
+        for p in np.argsort(totals, kind="stable")[: params.grown].tolist():
             if totals[p] == np.inf:
                 break
             own = self.partitions.of[p].tolist()
@@ -182,7 +180,7 @@ class Separation:
             if (counted := float(paid[own].sum())) < most - NEGLIGIBLE:
                 found.append((counted, p))
         found.sort()
-        return [self._cover(p, kept, completed, level) for _, p in found[:ADDED]]
+        return [self._cover(p, kept, completed, level) for _, p in found[: params.added]]
 
     def from_attack(self, plan: IntArray, attack: Attack, level: float) -> int:
         """The number of a cover for a level, by an attack that leaves a plan no more: it keeps what the attack leaves.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.maxmin.elements import Task
-    from ratt_opt.solvers.maxmin.rows.params import RowParams
+    from ratt_opt.solvers.maxmin.params import RowParams
 
 __all__ = ["base_set_inequalities", "first_of_each_class", "semidefinite"]
 

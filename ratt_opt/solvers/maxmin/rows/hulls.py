@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.maxmin.elements import Task
-    from ratt_opt.solvers.maxmin.rows.params import RowParams
+    from ratt_opt.solvers.maxmin.params import RowParams
 
 __all__ = ["TargetHull", "hulls_of"]
 

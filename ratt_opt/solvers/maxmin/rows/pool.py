@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.solvers.maxmin.elements import Task
+    from ratt_opt.solvers.maxmin.params import RowParams
     from ratt_opt.solvers.maxmin.rows.inequalities import Inequalities, TargetInequality
-    from ratt_opt.solvers.maxmin.rows.params import RowParams
 
 __all__ = ["InequalityPool", "Row"]
 

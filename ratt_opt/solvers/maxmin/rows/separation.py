@@ -10,7 +10,6 @@ from ratt_opt.solvers.maxmin.rows.base_sets import first_of_each_class, semidefi
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
 from ratt_opt.solvers.maxmin.rows.hulls import as_inequalities, hulls_of
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
-from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.pool import InequalityPool
 
 if TYPE_CHECKING:
@@ -41,8 +40,9 @@ class RelaxedGroups:
 class RowSeparation:
     """``inequalities`` : those of one problem, for all outcomes and nodes of its search."""
 
-    def __init__(self, task: Task, outcomes: OutcomePool, budget: Budget, params: RowParams) -> None:
-        self.task, self.outcomes, self.budget, self.params = task, outcomes, budget, params
+    def __init__(self, task: Task, outcomes: OutcomePool, budget: Budget) -> None:
+        self.task, self.outcomes, self.budget, self.params = task, outcomes, budget, task.params.rows
+        params = self.params
         self.inequalities = InequalityPool.of(task, params)
         self._first = first_of_each_class(task)
         everything = task.objective.posterior_mixture(np.ones(task.objective.n))
@@ -52,20 +52,20 @@ class RowSeparation:
         self.hulls = hulls_of(task, params, semidefinite(task.objective.information), self._first)
 
     @staticmethod
-    def fits(task: Task, params: RowParams | None = None) -> bool:
+    def fits(task: Task) -> bool:
         """Tell whether the criterion is a sum over targets of which robots see few.
 
         If they see all, tangents of whole groups are as low, and cost less.
         """
-        params = RowParams() if params is None else params
+        params = task.params.rows
         unseen = 1 - task.objective.information.any(axis=(-2, -1)).mean()
         return task.objective.overrides("target_tangents") and bool(unseen >= params.unseen)
 
     @staticmethod
-    def first_node(task: Task, params: RowParams | None = None) -> float:
+    def first_node(task: Task) -> float:
         """Nodes of all searches before rows begin: none if a search in depth seldom ends, infinite without rows."""
-        params = RowParams() if params is None else params
-        if not RowSeparation.fits(task, params):
+        params = task.params.rows
+        if not RowSeparation.fits(task):
             return np.inf
         seen = task.objective.information.any(axis=(-2, -1)).sum(axis=1).mean()
         return 0 if seen > params.seen else params.nodes

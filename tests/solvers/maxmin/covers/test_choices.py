@@ -19,6 +19,7 @@ from ratt_opt.solvers.maxmin.covers.separation import Ways
 from ratt_opt.solvers.maxmin.elements import PackedElements
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.marginal_search import dive
+from ratt_opt.solvers.maxmin.params import CoverSearchParams, MaxMinParams
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,9 +135,11 @@ def test_the_smallest_tables(robots: int, elements: int, targets: int, groups: i
         ways, pool, sums = (
             Ways(choices, members, inside, of, np.arange(groups)),
             CoverPool(choices),
-            CoverSums(elements),
+            CoverSums(elements, CoverSearchParams()),
         )
-        separation: Any = SimpleNamespace(choices=choices, pool=pool, ways=lambda ways=ways: ways)
+        separation: Any = SimpleNamespace(
+            choices=choices, pool=pool, ways=lambda ways=ways: ways, params=MaxMinParams()
+        )
         search = Dive(separation, sums)
         expected = Outcome.PROVED if groups and level >= (np.log(4) * targets if robots and elements else 0) else None
         for _ in range(3):
@@ -158,7 +161,7 @@ def test_the_smallest_dives_by_marginals(sizes: list[int], targets: int, attacks
     )
     for level in (0.5, 10.0):
         gains, path = marginal_tables.Gains(choosers.elements, 1), marginal_tables.Path(choosers, 1)
-        outcome = dive(choosers, known, gains, path, level=level, slack=0.0, nodes=50)
+        outcome = dive(choosers, known, gains, path, level=level, slack=0.0, nodes=50, tried=200)
         proved = bool(attacks) and (np.log(4) * targets * bool(sizes) <= level)
         assert outcome is (Outcome.PROVED if proved else Outcome.PLAN)
 

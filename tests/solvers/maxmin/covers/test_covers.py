@@ -81,7 +81,7 @@ def test_states_of_many_coordinates(kind: str, dimension: int, monkeypatch: pyte
 
 
 @pytest.mark.usefixtures("by_covers_alone")
-@pytest.mark.parametrize("limits", [covers(most_covers=4), covers(most_recorded=8)], ids=["covers", "nodes"])
+@pytest.mark.parametrize("limits", [covers(covers=4), covers(recorded=8)], ids=["covers", "nodes"])
 def test_forgetting_covers_and_searches_makes_no_bracket_false(limits: Way, monkeypatch: pytest.MonkeyPatch):
     go(monkeypatch, limits)
     for seed in range(CASES // 2):

@@ -10,6 +10,7 @@ from ratt_opt import LogDetObjective, Problem, TraceObjective, exhaustive_optimu
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.solve import solve_in_coordinates
+from ratt_opt.solvers.maxmin.stages.schedule import TREES_ALONE
 from tests.solvers.maxmin.proofs import proved_upper
 
 pytestmark = pytest.mark.slow
@@ -52,7 +53,8 @@ def test_both_ends_meet_at_the_best_of_all_plans(block: int, monkeypatch: pytest
     for _ in range(100):
         problem = drawn(rng)
         best = exhaustive_optimum(problem).lower
-        found = solve_in_coordinates(problem, Budget(max_nodes=2_000), 1e-6, in_depth=bool(rng.random() < 0.5))
+        stages = None if rng.random() < 0.5 else TREES_ALONE
+        found = solve_in_coordinates(problem, Budget(max_nodes=2_000), 1e-6, stages=stages)
         rounding = 1e-9 * best + 16 * problem.objective.rounding
         assert found.lower <= best + rounding
         assert best <= found.upper + rounding

@@ -10,9 +10,10 @@ import pytest
 from ratt_opt import InformationInput, Problem, certify, exhaustive_optimum, solve_maxmin, verify_certificate
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.elements import Task
-from ratt_opt.solvers.maxmin.rows.params import RowParams
+from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.solve import solve_in_coordinates
+from ratt_opt.solvers.maxmin.stages.schedule import TREES_ALONE
 from tests.solvers.maxmin.proofs import proved_upper
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def test_rows_that_begin_later_change_nothing_before(kind: str) -> None:
 def test_rows_may_begin_in_the_middle_of_a_tree(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(RowSeparation, "first_node", lambda _: 3)
     problem = covering_team(np.random.default_rng(4), robots=5, paths=4, targets=9, lost=2, kind=kind)
-    result = solve_in_coordinates(problem, Budget(), in_depth=False)
+    result = solve_in_coordinates(problem, Budget(), stages=TREES_ALONE)
     assert any(cut.lemmas for cut in result.proof.cuts)
     assert result.lower == pytest.approx(exhaustive_optimum(problem).lower, rel=1e-9)
     assert result.lower <= proved_upper(problem, result.proof) <= result.upper * (1 + 1e-9)

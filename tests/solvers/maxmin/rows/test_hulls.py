@@ -11,9 +11,9 @@ from scipy.optimize import linprog
 
 from ratt_opt import LogDetObjective, Problem, TraceObjective
 from ratt_opt.solvers.maxmin.elements import Task
+from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.rows.base_sets import first_of_each_class, semidefinite
 from ratt_opt.solvers.maxmin.rows.hulls import TargetHull, hulls_of
-from ratt_opt.solvers.maxmin.rows.params import RowParams
 
 ROBOTS, CONTROLS, TARGETS = 4, 3, 2
 

@@ -7,9 +7,9 @@ import pytest
 
 from ratt_opt import LogDetObjective, Problem, TraceObjective
 from ratt_opt.solvers.maxmin.elements import Task
+from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
-from ratt_opt.solvers.maxmin.rows.params import RowParams
 from ratt_opt.solvers.maxmin.rows.pool import InequalityPool
 from tests.solvers.maxmin.proofs import target_value
 

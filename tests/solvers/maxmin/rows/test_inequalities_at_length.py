@@ -7,10 +7,10 @@ import pytest
 
 from ratt_opt import Coverage, FacilityLocation, LogDetObjective, Part, Problem, SumFunction, TraceObjective
 from ratt_opt.solvers.maxmin.elements import Task
+from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities, first_of_each_class, semidefinite
 from ratt_opt.solvers.maxmin.rows.hulls import hulls_of
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
-from ratt_opt.solvers.maxmin.rows.params import RowParams
 
 pytestmark = pytest.mark.slow
 

@@ -9,33 +9,30 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from ratt_opt.attack.params import DEFAULT
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-    from ratt_opt.attack.params import AttackParams
-
-__all__ = ["changed", "read_attack_params"]
+__all__ = ["changed", "read_params"]
 
 P = TypeVar("P", bound="DataclassInstance")
 
 
-def read_attack_params(path: str | Path | None) -> AttackParams:
-    """Read the parameters of exact attacks that a file changes; all are as by default without a file.
+def read_params(path: str | Path | None, default: P) -> P:
+    """Read the parameters that a file changes; all are as in ``default`` without a file.
 
     Raises
     ------
     InputError : the file cannot be read or is no TOML, a parameter does not exist, or a value is none of its kind.
     """
     if path is None:
-        return DEFAULT
+        return default
     try:
         document = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError("params", f"must be a file of TOML ({error})", str(path)) from None
-    return _with(DEFAULT, document, "params")
+    return _with(default, document, "params")
 
 
 def changed(params: DataclassInstance) -> dict[str, Any]:

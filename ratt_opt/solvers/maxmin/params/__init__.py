@@ -1,0 +1,111 @@
+"""Parameters of the search for best plans: one frozen class for each algorithm, together in :class:`MaxMinParams`.
+
+They decide how soon a plan is found and a bracket closes, never whether a bracket holds.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ratt_opt.errors import InputError
+from ratt_opt.solvers.maxmin.params.coverage import CoverageParams
+from ratt_opt.solvers.maxmin.params.depth import (
+    CoverSearchParams,
+    DepthParams,
+    LevelParams,
+    MarginalParams,
+    SeparationParams,
+)
+from ratt_opt.solvers.maxmin.params.plans import (
+    AdversaryParams,
+    FewPlansParams,
+    IncumbentParams,
+    KickParams,
+    OutcomeListParams,
+    TieParams,
+)
+from ratt_opt.solvers.maxmin.params.rows import RowParams
+from ratt_opt.solvers.maxmin.params.trees import (
+    CutRoundParams,
+    DivisionParams,
+    GroupProofParams,
+    RestartParams,
+    SmallGroupParams,
+)
+
+__all__ = [
+    "DEFAULT",
+    "AdversaryParams",
+    "CoverSearchParams",
+    "CoverageParams",
+    "CutRoundParams",
+    "DepthParams",
+    "DivisionParams",
+    "FewPlansParams",
+    "GroupProofParams",
+    "IncumbentParams",
+    "KickParams",
+    "LevelParams",
+    "MarginalParams",
+    "MaxMinParams",
+    "OutcomeListParams",
+    "RestartParams",
+    "RowParams",
+    "SeparationParams",
+    "SmallGroupParams",
+    "TieParams",
+    "or_default",
+]
+
+
+AT_LEAST_ONE = (
+    "walk.fewest", "walk.back", "rounds.cuts", "rounds.targets", "group_proofs.steps", "restarts.later",
+    "restarts.growth", "depth.slice", "depth.growth", "levels.runs", "levels.growth", "marginals.run",
+    "marginals.room", "marginals.sets", "covers.run", "covers.room", "rows.most", "coverage.information",
+)  # fmt: skip
+"""Parameters without which a search would not go on, or not end."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MaxMinParams:
+    """Parameters of one search for the best plan, algorithm by algorithm; ``replace`` changes some.
+
+    ``solve_maxmin(..., params=params)`` uses them, and ``ratt-opt bound --params FILE`` reads them from TOML.
+    """
+
+    outcomes: OutcomeListParams = field(default_factory=OutcomeListParams)
+    adversary: AdversaryParams = field(default_factory=AdversaryParams)
+    incumbent: IncumbentParams = field(default_factory=IncumbentParams)
+    walk: KickParams = field(default_factory=KickParams)
+    ties: TieParams = field(default_factory=TieParams)
+    few_plans: FewPlansParams = field(default_factory=FewPlansParams)
+    rounds: CutRoundParams = field(default_factory=CutRoundParams)
+    division: DivisionParams = field(default_factory=DivisionParams)
+    group_proofs: GroupProofParams = field(default_factory=GroupProofParams)
+    small_groups: SmallGroupParams = field(default_factory=SmallGroupParams)
+    restarts: RestartParams = field(default_factory=RestartParams)
+    rows: RowParams = field(default_factory=RowParams)
+    depth: DepthParams = field(default_factory=DepthParams)
+    levels: LevelParams = field(default_factory=LevelParams)
+    marginals: MarginalParams = field(default_factory=MarginalParams)
+    covers: CoverSearchParams = field(default_factory=CoverSearchParams)
+    separation: SeparationParams = field(default_factory=SeparationParams)
+    coverage: CoverageParams = field(default_factory=CoverageParams)
+
+    def __post_init__(self) -> None:
+        """Check what a search could not go on without. ``InputError`` : it is less than 1, or there is no level."""
+        for place in AT_LEAST_ONE:
+            family, name = place.split(".")
+            if not (value := getattr(getattr(self, family), name)) >= 1:
+                raise InputError(f"params.{place}", "must be at least 1", value)
+        if 0.0 not in self.levels.shares:
+            raise InputError("params.levels.shares", "must hold 0, the level of the best plan", self.levels.shares)
+
+
+DEFAULT = MaxMinParams()
+"""Parameters of searches that are not given any."""
+
+
+def or_default(params: MaxMinParams | None) -> MaxMinParams:
+    """Return the parameters, or those of searches that are not given any."""
+    return DEFAULT if params is None else params

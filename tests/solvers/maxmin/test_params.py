@@ -1,0 +1,118 @@
+"""Parameters of the search for best plans: passed down, read from TOML, refused if a search could not go on."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import ratt_opt as ro
+from ratt_opt._params import changed, read_params
+from ratt_opt.cli import run
+from ratt_opt.solvers.maxmin import params as plan_params
+from ratt_opt.solvers.maxmin.params import AT_LEAST_ONE, MaxMinParams
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def team(seed: int = 0) -> ro.Problem:
+    return ro.limited_view_scenario(5, 6, alpha_s=1, alpha_c=2, seed=seed).problem("logdet")
+
+
+def extreme(value: Any, *, least: bool) -> Any:
+    """The smallest value that a parameter may have, or one that is huge for it."""
+    if isinstance(value, tuple):
+        return (0.0,) if least else (0.0, *value, 0.99)
+    return type(value)(0 if least else 20 * value + 1)
+
+
+def places() -> list[str]:
+    return [f"{family.name}.{one.name}" for family in fields(MaxMinParams) for one in fields(family.default_factory)]
+
+
+def with_one(place: str, value: Any) -> MaxMinParams:
+    family, name = place.split(".")
+    default = MaxMinParams()
+    return replace(default, **{family: replace(getattr(default, family), **{name: value})})
+
+
+def test_every_family_is_a_frozen_class_whose_fields_are_documented() -> None:
+    for family in fields(MaxMinParams):
+        kind = family.default_factory
+        assert is_dataclass(kind)
+        assert kind.__dataclass_params__.frozen  # type: ignore[attr-defined]
+        documented = kind.__doc__ or ""
+        missing = [one.name for one in fields(kind) if f"``{one.name}``" not in documented]
+        assert not missing, f"{kind.__name__} does not say what {missing} are"
+
+
+@pytest.mark.parametrize("place", places())
+def test_no_parameter_changes_what_is_claimed(place: str) -> None:
+    """Whatever one parameter is, the search ends and its bracket holds the best plan of all."""
+    problem = team()
+    best = ro.exhaustive_optimum(problem).lower
+    family, name = place.split(".")
+    value = getattr(getattr(MaxMinParams(), family), name)
+    for least in (True, False):
+        try:
+            params = with_one(place, extreme(value, least=least))
+        except ro.InputError:
+            assert place in AT_LEAST_ONE
+            continue
+        found = ro.solve_maxmin(problem, params=params, max_nodes=8, time_limit=0.5)
+        assert found.lower <= best * (1 + 1e-9)
+        assert found.upper >= best * (1 - 1e-9)
+
+
+def test_parameters_that_are_passed_are_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    few = with_one("outcomes.robots", 0)
+    listed: list[int] = []
+    plain = ro.solvers.maxmin.outcome_pool.OutcomePool.list_all
+
+    def list_all(pool: Any, params: Any) -> None:
+        listed.append(params.robots)
+        plain(pool, params)
+
+    monkeypatch.setattr(ro.solvers.maxmin.outcome_pool.OutcomePool, "list_all", list_all)
+    ro.solve_maxmin(team(), params=few, max_nodes=1)
+    ro.solve_maxmin(team(), max_nodes=1)
+    assert listed == [0, plan_params.DEFAULT.outcomes.robots]
+
+
+@pytest.mark.parametrize(("place", "value"), [("walk.back", 0), ("levels.runs", 0), ("restarts.growth", 0.5)])
+def test_what_a_search_cannot_go_on_with_is_refused(place: str, value: float) -> None:
+    with pytest.raises(ro.InputError, match=rf"params.{place} must be at least 1; got {value}"):
+        with_one(place, value)
+
+
+def test_a_search_without_the_level_of_the_best_plan_is_refused() -> None:
+    with pytest.raises(ro.InputError, match="must hold 0"):
+        with_one("levels.shares", ())
+
+
+def test_a_file_of_toml_changes_some(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, scenario, out = tmp_path / "params.toml", tmp_path / "team.json", tmp_path / "out"
+    path.write_text("[walk]\nback = 7\n[levels]\nshares = [0.0, 0.5]\n")
+    params = read_params(path, MaxMinParams())
+    assert changed(params) == {"walk.back": 7, "levels.shares": (0.0, 0.5)}
+    ro.save_scenario(ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0), scenario)
+    command = ["bound", str(scenario), "--out", str(out), "--params", str(path), "--guarantees", "none"]
+    assert run([*command, "--no-certificate"]) == 0
+    assert "walk.back = 7" in (out / "report.json").read_text()
+    capsys.readouterr()
+    path.write_text("[walk]\nback = 0\n")
+    assert run(command) == 2
+    assert "params.walk.back must be at least 1; got 0" in capsys.readouterr().err
+    path.write_text("[walks]\nback = 1\n")
+    assert run(command) == 2
+    assert "params must name some of outcomes" in capsys.readouterr().err
+
+
+def test_the_values_of_a_plan_do_not_depend_on_parameters() -> None:
+    problem = team(1)
+    found = ro.solve_maxmin(problem, params=with_one("walk.back", 3))
+    assert np.array_equal(found.elements, problem.check_plan(found.elements))
+    assert found.stop is ro.Stop.CLOSED
