@@ -69,10 +69,10 @@ class _Cases:
 
 def target_trees(problem: Problem, lemmas: Sequence[TargetLemma], params: TreeParams | None = None) -> list[TargetTree]:
     """Return a tree for each lemma; where its constant is too low, or limits are met, it proves a larger one only."""
-    return _Trees(problem, lemmas, params or TreeParams()).grown() if lemmas else []
+    return _TargetTrees(problem, lemmas, params or TreeParams()).grown() if lemmas else []
 
 
-class _Trees:
+class _TargetTrees:
     """The lemmas as arrays.
 
     ``elements`` (L, R, C): the options of each robot that touches a lemma's target, -1 for nothing, -2 for no option;

@@ -8,6 +8,7 @@ import pytest
 from ratt_opt import (
     Attack,
     AttackResult,
+    MaxMinParams,
     Problem,
     Stop,
     TraceObjective,
@@ -22,7 +23,7 @@ from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.solvers.maxmin.adversary import Adversary
 from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.params import IncumbentParams, MaxMinParams
+from ratt_opt.solvers.maxmin.params import IncumbentParams
 
 NODES = 40
 """Few: an attack on teams of this size takes thousands."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from ratt_opt import InputError
+from ratt_opt import InputError, MaxMinParams
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.solvers.maxmin import marginal_tables
 from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
@@ -19,7 +19,7 @@ from ratt_opt.solvers.maxmin.covers.separation import Ways
 from ratt_opt.solvers.maxmin.elements import PackedElements
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.marginal_search import dive
-from ratt_opt.solvers.maxmin.params import CoverSearchParams, MaxMinParams
+from ratt_opt.solvers.maxmin.params import CoverSearchParams
 
 if TYPE_CHECKING:
     from collections.abc import Callable
