@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from analysis.benchmark_library.solve import read_journal
 from ratt_opt.benchmark.instances.instance import read_document, read_instance
-from ratt_opt.benchmark.instances.library import BenchmarkLibrary
+from ratt_opt.benchmark.instances.library import INDEX, BenchmarkLibrary, hash_of
 from ratt_opt.benchmark.proofs.records import submit_record
 
 if TYPE_CHECKING:
@@ -53,19 +53,35 @@ def hardness_of(line: dict[str, Any]) -> str:
 
 
 def build(pool: Path, folder: Path, params: ChoiceParams) -> BenchmarkLibrary:
-    """Choose from a pool and write the library anew, every record verified once more as it enters."""
+    """Choose from a pool and write the library, every record verified once more as it enters.
+
+    What the folder holds already stays, if it is chosen and the same, so that a build that was stopped goes on.
+    """
     lines = {line["name"]: {**line, "hardness": hardness_of(line)} for line in read_journal(pool)}
     chosen = _chosen([line for line in lines.values() if line["bytes"] <= params.largest], params)
     curated = _curated(chosen, params.curated)
     folder.mkdir(parents=True, exist_ok=True)
-    library = BenchmarkLibrary(folder, {}, {})
+    library = _kept(folder, {line["name"] for line in chosen})
     for line in chosen:
         name = line["name"]
         instance = read_instance(pool / f"{name}.instance.json.xz")
         library = library.add(instance, hardness=line["hardness"], curated=name in curated)
         record = read_document(pool / f"{name}.record.json.xz")
-        library, _ = submit_record(library, record, who=f"ratt_opt {line['who']}")
+        if name not in library.best or library.best[name].certificate != hash_of(record):
+            library, _ = submit_record(library, record, who=f"ratt_opt {line['who']}")
     return library
+
+
+def _kept(folder: Path, chosen: set[str]) -> BenchmarkLibrary:
+    """The library of a folder without what is not chosen any more; an empty one if there is none."""
+    if not (folder / INDEX).exists():
+        return BenchmarkLibrary(folder, {}, {})
+    known = BenchmarkLibrary.load(folder)
+    for name in set(known.entries) - chosen:
+        known.path(name).unlink(missing_ok=True)
+        known.record_path(name).unlink(missing_ok=True)
+    entries = {name: entry for name, entry in known.entries.items() if name in chosen}
+    return BenchmarkLibrary(folder, entries, {name: row for name, row in known.best.items() if name in chosen})
 
 
 def _chosen(lines: list[dict[str, Any]], params: ChoiceParams) -> list[dict[str, Any]]:

@@ -183,3 +183,16 @@ def test_a_spent_budget_gives_a_plan():
         plan = ro.refined(problem, time_limit=limit)
         problem.check_plan(plan.elements)
         assert plan.lower <= best_by_definition(problem) + 1e-9
+
+
+def test_a_relaxed_plan_in_changed_coordinates_is_attacked():
+    """A wide prior changes coordinates; relaxed plans of fewer elements than the team has are attacked in these."""
+    points = np.repeat(np.linspace(-1, 1, 5), 3)
+    rows = np.vander(points, 3)
+    information = np.zeros((2 * len(points), 1, 3, 3))
+    information[1::2, 0] = rows[:, :, None] * rows[:, None, :]
+    f = ro.TraceObjective(1e4 * np.eye(3)[None], information)
+    problem = ro.Problem(f, np.repeat(np.arange(15), 2), None, 1, 0, at_most=6)
+    found = ro.solve_maxmin(problem, gap=1e-4, max_nodes=30)
+    assert 0 < found.lower <= found.upper
+    assert [points[e // 2] for e in found.elements.tolist() if e % 2] == [-1, -1, 0, 0, 1, 1]
