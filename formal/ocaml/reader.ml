@@ -366,6 +366,7 @@ let lemma owned size value =
         if depth > deepest then format "lemma tree" "is too deep";
         match next () with
         | Number _ as leaf -> LemmaLeaf (nat "lemma leaf" leaf)
+        | Record [ ("base", _) ] -> raise (Fault "upper proof: this checker reads no base sets in lemmas")
         | branch -> (
             match fields "lemma branch" [ "element"; "parts" ] branch with
             | [ robot; parts ] ->

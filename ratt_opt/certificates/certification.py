@@ -35,8 +35,8 @@ class Certificate:
 
     ``lower_shaved`` and ``upper_raised`` : how far the claim's ends lie outside the given bracket [unit of the
     objective]. Exact arithmetic proves a little less than floating point suggests; and the lower end is lower if a
-    cover of all attacks was found for a lower value only. The upper end is higher if the search had proved it by
-    inequalities of single targets: it is proved again by tangents, as far as limits allow.
+    cover of all attacks was found for a lower value only. The upper end is higher if trees of lemmas met their limits
+    (``target_trees.py``), and so prove larger constants.
     """
 
     path: Path

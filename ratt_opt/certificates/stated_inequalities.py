@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from flint import arb, ctx, fmpq
 from ratt_opt.certificates.stated_problem import statement_of
 from ratt_opt.certificates.target_trees import target_trees
 from ratt_opt.certificates.verifier import target_lemmas as checked
+from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.tangents import read_tangents, seers_of
 from ratt_opt.solvers.maxmin.proof import TargetLemma
 
@@ -25,9 +27,13 @@ __all__ = ["StatedInequalities", "round_up", "shortened"]
 
 DIGITS = 9
 """Digits kept of a Fenchel point: any point is valid, and the bound changes by the square of its error."""
+LEMMA_DIGITS = 12
+"""Digits kept of points and scores of single targets: a leaf of a lemma bounds many sets, most beside the point."""
 LARGEST_CONDITION = 1e6
 """Largest condition of the matrices whose points are shortened: with more, so few digits could leave one that is not
 positive definite."""
+SLACK = fmpq(1, 2**60)
+"""Added to constants of which only a ball is known, so that checkers of fewer bits can decide them, too."""
 PRECISION = 256
 """Bits of balls around the constants that trees prove."""
 
@@ -87,7 +93,7 @@ class StatedInequalities:
             fenchel = self._objective.of_target(target).fenchel_point(point[None], 0)
             touch = fenchel[1:] if self._objective.is_least_of_targets else fenchel
             self._tangents[key] = len(self._stated)
-            self._stated.append([target, *shortened(touch, point)])
+            self._stated.append([target, *shortened(touch, point, LEMMA_DIGITS)])
         return self._tangents[key]
 
     def _lemma(self, lemma: TargetLemma) -> int:
@@ -119,13 +125,14 @@ class StatedInequalities:
         about = statement_of(self._problem)
         found = []
         with ctx.workprec(PRECISION):
-            tangents = read_tangents(about, self._stated)
+            tangents, marginals = read_tangents(about, self._stated), cache(partial(MarginalBounds, about))
             for lemma, tree in zip(lemmas, trees, strict=True):
                 elements = np.flatnonzero(lemma.scores).tolist()
                 scores = {e: fmpq(*float(lemma.scores[e]).as_integer_ratio()) for e in elements}
                 claim = checked.TargetLemma(lemma.target, scores, fmpq(0))
                 options = checked.options_of(about, claim, seers_of(about, lemma.target))
-                constant = round_up(checked.least_constant(about, tangents, claim, tree, options))
+                least = checked.least_constant(tangents, marginals, claim, tree, options)
+                constant = round_up(least if isinstance(least, fmpq) else least + SLACK)
                 found.append(
                     {
                         "target": lemma.target,
@@ -145,7 +152,9 @@ class StatedInequalities:
         nodes, waiting = list[Any](), [root]
         while waiting:
             node = waiting.pop()
-            if node.point is not None:
+            if node.base is not None:
+                nodes.append({"base": node.base})
+            elif node.point is not None:
                 nodes.append(self._tangent(target, node.point))
             else:
                 nodes.append({"element": node.robot, "parts": node.parts})
@@ -153,19 +162,19 @@ class StatedInequalities:
         return nodes
 
 
-def shortened(touch: Any, point: FloatArray) -> Any:
+def shortened(touch: Any, point: FloatArray, digits: int = DIGITS) -> Any:
     """Shorten the digits of a Fenchel point (nested lists) of well conditioned information ``point`` (..., d, d)."""
-    return touch if np.linalg.cond(point).max() > LARGEST_CONDITION else _short(touch)
+    return touch if np.linalg.cond(point).max() > LARGEST_CONDITION else _short(touch, digits)
 
 
-def _short(value: Any) -> Any:
+def _short(value: Any, digits: int) -> Any:
     if isinstance(value, list):
-        return [_short(item) for item in value]
-    return value if isinstance(value, int) else float(f"{value:.{DIGITS}g}")
+        return [_short(item, digits) for item in value]
+    return value if isinstance(value, int) else float(f"{value:.{digits}g}")
 
 
 def _short_scores(scores: FloatArray) -> FloatArray:
-    return np.array([float(f"{score:.{DIGITS}g}") for score in scores])
+    return np.array([float(f"{score:.{LEMMA_DIGITS}g}") for score in scores])
 
 
 def round_up(bound: fmpq | arb) -> float:

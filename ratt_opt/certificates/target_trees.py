@@ -3,7 +3,7 @@
 A lemma says ``phi_j(T) <= constant + sum of scores[e] over e in T``. Its tree is a branch and bound over such sets. A
 case says what each robot may have, an element or nothing. The value is concave in the information, so a relaxed set
 of a case, found by conditional gradients, has a tangent that bounds all its sets. Cases whose bound is above the
-constant are divided by one robot's options. All cases of one depth, of all lemmas, are bounded at once.
+constant are divided by one robot's options, those with the largest bounds first, of all lemmas at once.
 
 Source: conditional gradients (Frank and Wolfe 1956), whose gap is a bound at every step.
 """
@@ -11,15 +11,16 @@ Source: conditional gradients (Frank and Wolfe 1956), whose gap is a bound at ev
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.certificates.verifier.work import tick
+from ratt_opt.certificates.verifier.work import seconds_left, tick
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
@@ -37,39 +38,63 @@ class TreeParams:
         a larger constant
     ``steps`` : of conditional gradients for one case, at most; then it is divided
     ``searches`` : evaluations of one step's length
-    ``nodes`` : of one tree, beyond which its cases are leaves as they are
+    ``nodes``, ``all_nodes`` : of one tree, and of all; then cases are leaves as they are. Files and the time to verify
+        them grow with both
+    ``plain`` : nodes of a tree of tangents alone, which more checkers read, before bases are leaves, too (log-det)
+    ``divided`` : cases of one tree divided together, those with the largest bounds: fewer rounds against more nodes
     ``at_once`` : cases bounded together, for the memory that they take
+    ``share`` : of the seconds left, likewise
     """
 
     tolerance: float = 1e-9
     steps: int = 24
     searches: int = 4
-    nodes: int = 20_000
+    nodes: int = 4_000
+    plain: int = 200
+    all_nodes: int = 80_000
+    divided: int = 32
     at_once: int = 4096
+    share: float = 0.3
 
 
 @dataclass(slots=True, eq=False)
 class TargetTree:
-    """A tree over a target's sets: a leaf has the information (d, d) where its tangent touches, a branch its parts."""
+    """A tree over a target's sets: a branch has its parts, a leaf a bound.
+
+    ``base`` : elements beyond which gains diminish; else ``point`` : the information (d, d) where a tangent touches
+    """
 
     point: FloatArray | None = None
+    base: list[int] | None = None
     robot: int = -1
     parts: list[list[int]] = field(default_factory=list)
     below: list[TargetTree] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Cases:
-    """Cases of one depth: their ``lemmas`` (K,), options ``allowed`` (K, R, C) and the ``nodes`` that they are."""
+class _Case:
+    """An open case of a tree: what robots may have, ``allowed`` (R, C), and how its sets are bounded."""
 
-    lemmas: IntArray
+    node: TargetTree
     allowed: BoolArray
-    nodes: list[TargetTree]
+    share: FloatArray
+    bound: float
 
 
 def target_trees(problem: Problem, lemmas: Sequence[TargetLemma], params: TreeParams | None = None) -> list[TargetTree]:
     """Return a tree for each lemma; where its constant is too low, or limits are met, it proves a larger one only."""
-    return _TargetTrees(problem, lemmas, params or TreeParams()).grown() if lemmas else []
+    if not lemmas:
+        return []
+    params = params or TreeParams()
+    if not problem.information_objective.is_submodular:
+        return _TargetTrees(problem, lemmas, params).grown()[0]
+    trees, closed = _TargetTrees(problem, lemmas, replace(params, nodes=min(params.plain, params.nodes))).grown()
+    left = [k for k, is_closed in enumerate(closed) if not is_closed]
+    if left:
+        again = _TargetTrees(problem, [lemmas[k] for k in left], params, has_bases=True).grown()[0]
+        for k, tree in zip(left, again, strict=True):
+            trees[k] = tree
+    return trees
 
 
 class _TargetTrees:
@@ -79,8 +104,10 @@ class _TargetTrees:
     ``information`` (L, R, C, d, d) and ``scores`` (L, R, C) of them.
     """
 
-    def __init__(self, problem: Problem, lemmas: Sequence[TargetLemma], params: TreeParams) -> None:
-        self.params, objective = params, problem.information_objective
+    def __init__(
+        self, problem: Problem, lemmas: Sequence[TargetLemma], params: TreeParams, *, has_bases: bool = False
+    ) -> None:
+        self.params, self.has_bases, objective = params, has_bases, problem.information_objective
         self.objective, self.targets = objective, np.array([lemma.target for lemma in lemmas])
         sees, owner = abs(objective.information).sum(axis=(-2, -1)), problem.robot
         touching = [np.flatnonzero(sees[:, lemma.target] + abs(lemma.scores)) for lemma in lemmas]
@@ -107,66 +134,76 @@ class _TargetTrees:
         base = objective.target_values(objective.prior_information) + objective.criterion(objective.prior_information)
         self.base = np.full(len(lemmas), base.max()) if objective.is_least_of_targets else base[self.targets]
 
-    def grown(self) -> list[TargetTree]:
-        """The trees, grown depth by depth."""
+    def grown(self) -> tuple[list[TargetTree], list[bool]]:
+        """The trees, and whether each shows its constant.
+
+        Cases of largest bounds are divided until none is too large, or limits are met.
+        """
         trees = [TargetTree() for _ in self.targets]
-        counts = np.zeros(len(trees), dtype=np.int64)
-        waiting = [_Cases(np.arange(len(trees)), self.elements >= -1, trees)]
-        while waiting:
-            cases = waiting.pop()
-            if len(cases.nodes) > self.params.at_once:
-                halves = np.array_split(np.arange(len(cases.nodes)), 2)
-                waiting += [
-                    _Cases(cases.lemmas[own], cases.allowed[own], [cases.nodes[k] for k in own]) for own in halves
-                ]
-                continue
-            np.add.at(counts, cases.lemmas, 1)
-            if below := self._expand(cases, counts):
-                waiting.append(below)
-        return trees
+        waiting: list[list[_Case]] = [[] for _ in trees]
+        self._open(waiting, [(k, tree, self.elements[k] >= -1) for k, tree in enumerate(trees)])
+        if self.has_bases:
+            for k, tree in enumerate(trees):
+                if self._bounded_beyond(k, tree):
+                    waiting[k].clear()
+        counts, until = np.ones(len(trees), dtype=np.int64), monotonic() + self.params.share * seconds_left()
+        most = min(self.params.nodes, self.params.all_nodes // max(len(trees), 1))
+        while monotonic() < until:
+            tick()
+            below: list[tuple[int, TargetTree, BoolArray]] = []
+            for k, own in enumerate(waiting):
+                if own and counts[k] < most:
+                    own.sort(key=lambda case: case.bound)
+                    for case in own[-self.params.divided :]:
+                        below += [(k, *child) for child in self._divide(k, case)]
+                    del own[-self.params.divided :]
+            if not below:
+                break
+            np.add.at(counts, [k for k, _, _ in below], 1)
+            self._open(waiting, below)
+        return trees, [not own for own in waiting]
 
-    def _expand(self, cases: _Cases, counts: IntArray) -> _Cases | None:
-        """Make leaves of the cases that are closed, and return those below the others."""
-        tick()
-        bounds, points, shares = self._bound(cases)
-        decided = (cases.allowed.sum(axis=-1) <= 1).all(axis=-1)
-        closed = (bounds <= self.enough[cases.lemmas]) | decided | (counts[cases.lemmas] > self.params.nodes)
-        lemmas: list[int] = []
-        allowed: list[BoolArray] = []
-        nodes: list[TargetTree] = []
-        for k, node in enumerate(cases.nodes):
-            if closed[k]:
-                node.point = points[k]
-                continue
-            own, lemma = cases.allowed[k], int(cases.lemmas[k])
-            row = _divided_row(own, shares[k])
-            node.robot = int(self.robots[lemma, row])
-            for column in np.flatnonzero(own[row] & (self.elements[lemma, row] >= 0)).tolist():
+    def _open(self, waiting: list[list[_Case]], fresh: list[tuple[int, TargetTree, BoolArray]]) -> None:
+        """Bound new cases, each a leaf for now; keep those that may be divided and are not low enough."""
+        for start in range(0, len(fresh), self.params.at_once):
+            some = fresh[start : start + self.params.at_once]
+            lemmas, allowed = np.array([k for k, _, _ in some]), np.array([own for _, _, own in some])
+            bounds, points, shares = self._bound(lemmas, allowed)
+            beyond = self._beyond(lemmas, allowed) if self.has_bases else np.full(len(some), np.inf)
+            by_base, bounds = beyond < bounds, np.minimum(beyond, bounds)
+            divisible = (allowed.sum(axis=-1) > 1).any(axis=-1) & (bounds > self.enough[lemmas])
+            for number, (k, node, own) in enumerate(some):
+                node.point, node.base = points[number], self._decided(k, own) if by_base[number] else None
+                if divisible[number]:
+                    waiting[k].append(_Case(node, own, shares[number], float(bounds[number])))
+
+    def _divide(self, lemma: int, case: _Case) -> Iterator[tuple[TargetTree, BoolArray]]:
+        """Divide a case by one robot's options; yield the nodes below and what they allow, nothing last."""
+        node, own = case.node, case.allowed
+        row = _divided_row(own, case.share)
+        node.robot, node.point, node.base = int(self.robots[lemma, row]), None, None
+        for column in sorted(np.flatnonzero(own[row]).tolist(), key=lambda c: self.elements[lemma, row, c] < 0):
+            if self.elements[lemma, row, column] >= 0:
                 node.parts.append([int(self.elements[lemma, row, column])])
-                node.below.append(TargetTree())
-                lemmas.append(lemma)
-                allowed.append(_with_only(own, row, column))
-            nothing = np.flatnonzero(own[row] & (self.elements[lemma, row] == -1)).tolist()
-            for column in nothing:
-                node.below.append(TargetTree())
-                lemmas.append(lemma)
-                allowed.append(_with_only(own, row, column))
-            nodes += node.below
-        return _Cases(np.array(lemmas), np.array(allowed), nodes) if nodes else None
+            node.below.append(TargetTree())
+            yield node.below[-1], _with_only(own, row, column)
 
-    def _bound(self, cases: _Cases) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Bounds (K,), the points (K, d, d) of their tangents, and relaxed sets (K, R, C), by conditional gradients."""
-        count, enough = len(cases.nodes), self.enough[cases.lemmas]
-        information, scores = self.information[cases.lemmas], self.scores[cases.lemmas]
-        prior, open_ = self.prior[cases.lemmas], np.arange(count)
-        shares = cases.allowed / cases.allowed.sum(axis=-1, keepdims=True)
+    def _bound(self, of: IntArray, allowed: BoolArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Bound cases of lemmas ``of`` (K,) by conditional gradients.
+
+        Returns bounds (K,), the points (K, d, d) of their tangents, and relaxed sets (K, R, C)
+        """
+        count, enough = len(of), self.enough[of]
+        information, scores = self.information[of], self.scores[of]
+        prior, open_ = self.prior[of], np.arange(count)
+        shares = allowed / allowed.sum(axis=-1, keepdims=True)
         bounds, points = np.full(count, np.inf), np.array(prior)
         for _ in range(self.params.steps):
-            own, x, lemmas = information[open_], shares[open_], cases.lemmas[open_]
+            own, x, lemmas = information[open_], shares[open_], of[open_]
             point = prior[open_] + np.einsum("krc,krcab->kab", x, own)
             value, slope = self._value(point, lemmas), self._slope(point, lemmas)
             gains = np.einsum("kab,krcab->krc", slope, own) - scores[open_]
-            gains[~cases.allowed[open_]] = -np.inf
+            gains[~allowed[open_]] = -np.inf
             best = gains.argmax(axis=-1)
             most = np.take_along_axis(gains, best[..., None], axis=-1)[..., 0].sum(axis=-1)
             bound = value + np.einsum("kab,kab->k", slope, prior[open_] - point) + most
@@ -184,6 +221,41 @@ class _TargetTrees:
             paid = np.einsum("krc,krc->k", step, scores[open_])
             shares[open_] = x + self._length(point[going], toward, paid, lemmas[going])[:, None, None] * step
         return bounds, points, shares
+
+    def _beyond(self, of: IntArray, allowed: BoolArray) -> FloatArray:
+        """(K,) bounds of cases by what their sure elements are worth, and the largest gains beside these."""
+        information, scores = self.information[of], self.scores[of]
+        sure = allowed & (allowed.sum(axis=-1, keepdims=True) == 1)
+        point = self.prior[of] + np.einsum("krc,krcab->kab", sure, information)
+        alone, before = self._alone(of), self._value(point, of)
+        after = self.base[of][:, None, None] - np.moveaxis(
+            alone.criterion(np.moveaxis(point[:, None, None] + information, 0, -3)), -1, 0
+        )
+        gains = np.where(sure, 0.0, after - before[:, None, None]) - scores
+        gains[~allowed] = -np.inf
+        return np.asarray(before + gains.max(axis=-1).sum(axis=-1))
+
+    def _bounded_beyond(self, lemma: int, root: TargetTree) -> bool:
+        """Bound all sets beyond the elements without a score, as base sets have none; whether that is enough."""
+        real = self.elements[lemma] >= 0
+        of_base = real & (self.scores[lemma] == 0)
+        point = self.prior[lemma] + self.information[lemma][of_base].sum(axis=0)
+        of = np.full(1, lemma)
+        before = self._value(point[None], of)[0]
+        after = self._value(point + self.information[lemma][real], np.full(int(real.sum()), lemma))
+        gains = np.zeros(real.shape)
+        gains[real] = after - before
+        gains = np.where(of_base, 0.0, gains) - self.scores[lemma]
+        gains[self.elements[lemma] < -1] = -np.inf
+        enough = before + gains.max(axis=-1).sum() <= self.enough[lemma]
+        if enough:
+            root.base = sorted(self.elements[lemma][of_base].tolist())
+        return bool(enough)
+
+    def _decided(self, lemma: int, allowed: BoolArray) -> list[int]:
+        """Elements that all sets of a case have."""
+        sure = allowed & (allowed.sum(axis=-1, keepdims=True) == 1) & (self.elements[lemma] >= 0)
+        return sorted(self.elements[lemma][sure].tolist())
 
     def _length(self, point: FloatArray, toward: FloatArray, paid: FloatArray, lemmas: IntArray) -> FloatArray:
         """(K,) lengths of steps in (0, 1] that nearly maximise values less scores, by secants of their derivative."""

@@ -84,8 +84,11 @@ class _Story(UpperCheck):
         """Tell what a lemma says of sets of elements, and what shows it."""
         lemma = self.inequalities.lemmas[number]
         scores = "".join(f" + {_number(score)} (element {e})" for e, score in lemma.scores.items())
-        leaves = sum(isinstance(node, int) for node in given["tree"])
-        cases = "one tangent" if leaves == 1 else f"{leaves} cases"
+        leaves = sum("parts" not in node for node in given["tree"] if isinstance(node, dict)) + sum(
+            isinstance(node, int) for node in given["tree"]
+        )
+        one = "one tangent" if isinstance(given["tree"][0], int) else "gains beside one base"
+        cases = one if leaves == 1 else f"{leaves} cases"
         most = f"{_number(lemma.constant)}{scores}"
         return f"Lemma {number}: no set is worth more for target {lemma.target} than {most}, by {cases}"
 

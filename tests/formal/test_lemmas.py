@@ -73,3 +73,14 @@ def test_spaced_log_determinants_are_refused_in_one_line(tmp_path):
     done = subprocess.run([ratt_check(), str(path)], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout.count("\n")) == (1, 1)
     assert "reads the spacing of values for the trace only" in done.stdout
+
+
+def test_base_sets_are_refused_in_one_line(tmp_path):
+    """The extracted checker reads tangents at the leaves of lemmas, which show the same at more length."""
+    document = next(iter(bases(tmp_path, [0])))[1]
+    lemma = {"target": 0, "elements": [], "scores": [], "constant": 1e3, "tree": [{"base": []}]}
+    path = tmp_path / "base.json"
+    path.write_text(json.dumps(changed(document, ("upper", "lemmas"), [*document["upper"]["lemmas"], lemma])))
+    done = subprocess.run([ratt_check(), str(path)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.count("\n")) == (1, 1)
+    assert "reads no base sets in lemmas" in done.stdout

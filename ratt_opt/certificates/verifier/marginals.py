@@ -60,6 +60,15 @@ class MarginalBounds:
         """No group is worth more, whatever each robot chooses of the elements that are ``left`` to it."""
         return largest([self._group_bound(group, left) for group in groups])
 
+    def beyond(self, target: int, base: tuple[int, ...], elements: tuple[int, ...]) -> tuple[Any, dict[int, Any]]:
+        """Bound one target's value of every set by what a base is worth, and gains of other elements beside it.
+
+        ``phi_j(T) <= phi_j(T and base) <= phi_j(base) + sum over e in T outside the base of its gain beside the base``
+        """
+        numbers = tuple(e for e in base if target in self._elements[e].matrices)
+        gains = {e: self._gain(target, numbers, e) for e in elements if target in self._elements[e].matrices}
+        return self._beside(target, numbers).value, {e: gain for e, gain in gains.items() if e not in base}
+
     def _group_bound(self, group: frozenset[int], left: tuple[tuple[int, ...], ...]) -> Any:
         tick()
         chosen = {i: self._strongest(left[i]) for i in sorted(group)}

@@ -24,7 +24,7 @@ from ratt_opt.certificates.verifier.reading import (
 )
 from ratt_opt.certificates.verifier.work import afford, hold, refuse_wide
 
-__all__ = ["PRECISIONS", "Statement"]
+__all__ = ["LARGEST_TEAM", "PRECISIONS", "Statement"]
 
 PRECISIONS = (128, 1024)
 """Bits of the balls; a comparison undecided at the last is not proved. The first decides nearly all of them."""

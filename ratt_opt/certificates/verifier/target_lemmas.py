@@ -2,7 +2,8 @@
 
 A lemma says ``phi_j(T) <= constant + sum of scores[e] over e in T`` for every set ``T`` of at most one element of each
 robot. Its tree divides these sets by what they have of a robot: an element of one of the parts named, or, as the last
-child, none of those. At a leaf a tangent of the target bounds all sets of the case, robot by robot.
+child, none of those. At a leaf a tangent of the target bounds all sets of the case, robot by robot; of the log-det,
+whose gains diminish, also what a base set is worth, and the gains of other elements beside it (``marginals.py``).
 """
 
 from __future__ import annotations
@@ -13,12 +14,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flint import arb, fmpq
 
 from ratt_opt.certificates.verifier.exact_matrices import largest
+from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.reading import array, check_size, exact, fields, index, indices, need, walk
+from ratt_opt.certificates.verifier.statement import LARGEST_TEAM
 from ratt_opt.certificates.verifier.tangents import Bound, Tangent, read_tangents, seers_of
 from ratt_opt.certificates.verifier.work import hold, tick
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from ratt_opt.certificates.verifier.statement import Statement
 
@@ -44,6 +47,7 @@ class TargetInequalities:
 
     def __init__(self, about: Statement, tangents: object, lemmas: object, usual: object) -> None:
         self._about, self._terms, self._seers = about, 0, cache(partial(seers_of, about))
+        self.marginals = cache(partial(MarginalBounds, about))
         self.tangents = read_tangents(about, tangents)
         self.lemmas = [self._lemma(k, lemma) for k, lemma in enumerate(array("lemmas", lemmas))]
         self._usual = self._named("usual", usual)
@@ -84,7 +88,7 @@ class TargetInequalities:
         scored = indices("lemma elements", elements, n)
         values = [exact("lemma scores", x) for x in array("lemma scores", scores, len(scored))]
         lemma = TargetLemma(j, dict(zip(scored, values, strict=True)), constant)
-        least = least_constant(about, self.tangents, lemma, tree, options_of(about, lemma, self._seers(j)))
+        least = least_constant(self.tangents, self.marginals, lemma, tree, options_of(about, lemma, self._seers(j)))
         need(least <= constant, f"upper proof: the tree of lemma {number} only proves {arb(least).str(17)}")
         return lemma
 
@@ -98,32 +102,38 @@ def options_of(about: Statement, lemma: TargetLemma, seers: tuple[int, ...]) -> 
 
 
 def least_constant(
-    about: Statement, tangents: list[Tangent], lemma: TargetLemma, tree: object, options: Options
+    tangents: list[Tangent], marginals: Callable[[], MarginalBounds], lemma: TargetLemma, tree: object, options: Options
 ) -> Any:
     """Return the largest bound of the tree's leaves on ``phi_j(T) - scores(T)``; together they hold for every set."""
     bounds: list[Any] = []
+    elements = tuple(e for own in options.values() for e in own if e is not None)
 
     def expand(node: object, case: Options) -> Iterator[Options]:
-        if isinstance(node, dict):
-            yield from _below(about, node, case)
+        if isinstance(node, dict) and "base" in node:
+            (base,) = fields("lemma leaf", node, "base")
+            of_base = indices("lemma leaf base", base, max(elements, default=-1) + 1)
+            bound, gains = marginals().beyond(lemma.target, of_base, elements)
+        elif isinstance(node, dict):
+            yield from _below(node, case)
             return
-        tangent = tangents[index("lemma leaf", node, len(tangents))]
-        need(tangent.target == lemma.target, "upper proof: a leaf of a lemma is a tangent of another target")
-        bound = tangent.constant
+        else:
+            tangent = tangents[index("lemma leaf", node, len(tangents))]
+            need(tangent.target == lemma.target, "upper proof: a leaf of a lemma is a tangent of another target")
+            bound, gains = tangent.constant, tangent.scores
         for own in case.values():
-            bound += max(ZERO if e is None else tangent.scores.get(e, ZERO) - lemma.scores.get(e, ZERO) for e in own)
+            bound += largest([ZERO if e is None else gains.get(e, ZERO) - lemma.scores.get(e, ZERO) for e in own])
         bounds.append(bound)
 
     walk("lemma", tree, options, expand)
     return largest(bounds)
 
 
-def _below(about: Statement, node: object, case: Options) -> Iterator[Options]:
+def _below(node: object, case: Options) -> Iterator[Options]:
     """Yield the cases below a branch: one for each part, and one for the robot's other options."""
     robot, parts = fields("lemma branch", node, "element parts")
-    i = index("lemma branch robot", robot, about.n)
+    i = index("lemma branch robot", robot, LARGEST_TEAM)
     need(i in case, "upper proof: a lemma branches on a robot that does not see its target")
-    blocks = [indices("lemma branch", part, len(about.owner)) for part in array("lemma branch parts", parts)]
+    blocks = [indices("lemma branch", part, 10**9) for part in array("lemma branch parts", parts)]
     named = [e for block in blocks for e in block]
     fits = all(blocks) and len(set(named)) == len(named) and set(named) <= set(case[i])
     need(fits, f"upper proof: the parts of robot {i} in a lemma are not of the elements left")

@@ -5,7 +5,6 @@ Notation, per target: ``<A, B> = tr(A B)`` and ``L(S) = prior^{-1} + sum of the 
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,7 +12,6 @@ from flint import arb, ctx, fmpq
 
 from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import largest, total
-from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.reading import (
     array,
     exact,
@@ -101,7 +99,6 @@ class UpperCheck:
         self.cuts = [self._cut(cut) for cut in array("cuts", cuts)]
         self.cuts += [self._row(row) for row in array("rows", rows)]
         self.covers = [self._cover(cover) for cover in array("covers", covers)]
-        self._marginals = cache(lambda: MarginalBounds(about))
         self._named: dict[int, list[tuple[int, ...]]] = {}
         is_spaced = isinstance(part, dict) and "spacing" in part
         self.spacing = Spacing(about, spacing, self.inequalities.lemmas) if is_spaced else None
@@ -191,7 +188,7 @@ class UpperCheck:
     def marginal_leaf(self, node: object, left: Left, _: Winners) -> Any:
         """Return the bound by gains: no group of the attack is worth more."""
         (attack,) = fields("marginal leaf", node, "marginals")
-        return self._marginals().bound(self.groups[self._number("marginal leaf", attack)], left)
+        return self.inequalities.marginals().bound(self.groups[self._number("marginal leaf", attack)], left)
 
     def _number(self, where: str, attack: object) -> int:
         return index(where, attack, len(self.groups))
