@@ -34,7 +34,7 @@ from .scenario.mrclam_reader import MrclamData as MrclamData, read_mrclam as rea
 from .scenario.simulation import simulate_tracking as simulate_tracking, Tracking as Tracking
 
 # == Planners
-from .solvers.refined import RefinedPlan as RefinedPlan, refined as refined
+from .solvers.refined import RefinedParams as RefinedParams, RefinedPlan as RefinedPlan, refined as refined
 from .solvers.ratt import ratt as ratt, greedy as greedy, myopic as myopic, random_plan as random_plan
 from .solvers.maxmin.params import MaxMinParams as MaxMinParams
 from .solvers.maxmin.solve import nonrobust_optimum as nonrobust_optimum, solve_maxmin as solve_maxmin

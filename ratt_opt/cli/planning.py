@@ -119,7 +119,7 @@ def _bound(
     as_latex: bool,
 ) -> None:
     from ratt_opt._files import output_directory
-    from ratt_opt.main_job.bound import CERTIFICATE_SHARE
+    from ratt_opt.main_job.bound import SHARES
     from ratt_opt.main_job.bound import bound as main_job
     from ratt_opt.missions.world import MissionModel
     from ratt_opt.report.tables import report_tables
@@ -130,7 +130,7 @@ def _bound(
     folder = output_directory(out, CERTIFICATE, EARLIER, CUTS, *FILES)
     check_limits(gap, time_limit)
     began = monotonic()
-    searching = (1 - CERTIFICATE_SHARE) * time_limit if certificate else time_limit
+    searching = (1 - SHARES.certificate) * time_limit if certificate else time_limit
     model = None if motion is None else MissionModel(motion=motion, objective=objective)
     asked: dict[str, Any] = {
         "model": model,

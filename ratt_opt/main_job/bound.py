@@ -88,19 +88,35 @@ class Steps:
             self.tell(line)
 
 
-ATTACK_SHARE, NONROBUST_SHARE, OPTIMUM_SHARE, CURVATURE_SHARE = 0.08, 0.1, 0.75, 0.5
-"""Share of the time left that each attack, and each of the later searches, may take. If all take theirs, the attacks
-on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to the best plan, which may spend 44 %
-of the whole; the curvature and the guarantee from it share the rest. A search whose share is spent returns its
-bracket, so shares trade strength only; the non-robust optimum is a baseline if it is proved in its share."""
-CERTIFICATE_SHARE = 0.25
-"""Share of the whole time kept for writing and verifying a certificate, if one is wanted.
-Time that the searches leave comes on top."""
-CURVATURE_GAP = 0.1
-"""A curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every guarantee is a power
-or a ratio of ``1 - curvature``, so that share is what an unfinished bracket can cost it per factor."""
 GUARANTEES = ("none", "quick", "full")
 """Modes of the guarantees."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReportParams:
+    """Shares of the time left that the parts of a report may take; a part whose share is spent returns its bracket.
+
+    If all take theirs, the attacks on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to
+    the best plan, which may spend 44 % of the whole; the curvature and the guarantee from it share the rest.
+
+    ``attack`` : for each attack. ``nonrobust`` : for the best plan without attacks, a baseline if it is proved
+    ``optimum`` : for the best plan. ``curvature`` : for curvatures, and then for the guarantees from them
+    ``certificate`` : of the whole time, kept for writing and verifying a certificate; time that is left comes on top
+    ``curvature_gap`` : a curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every
+        guarantee is a power or a ratio of ``1 - curvature``, so that is what an open bracket costs it per factor
+    ``seed`` : of the random baseline, so that a report is reproducible
+    """
+
+    attack: float = 0.08
+    nonrobust: float = 0.1
+    optimum: float = 0.75
+    curvature: float = 0.5
+    certificate: float = 0.25
+    curvature_gap: float = 0.1
+    seed: int = 0
+
+
+SHARES = ReportParams()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,8 +141,6 @@ class QuickGuarantees:
 QUICK = QuickGuarantees()
 TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust_optimum")
 """Names of a report's own planners."""
-RANDOM_SEED = 0
-"""Seed of the random baseline, so that a report is reproducible."""
 
 
 @runtime_checkable
@@ -187,7 +201,7 @@ def bound(
     problem, source = _problem_of(given, objective, model)
     check_problem(problem, knows_at_most=True)
     whole, steps, busy_since = Budget(time_limit), Steps(progress), process_time()
-    budget = whole if certificate is None else whole.part(1 - CERTIFICATE_SHARE)
+    budget = whole if certificate is None else whole.part(1 - SHARES.certificate)
     with steps("RATT and the baselines"):
         # Asked for once: of a slow function of the user's own these are most of what a short limit has time for.
         single = problem.objective.singletons()
@@ -199,14 +213,14 @@ def bound(
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, params=params)
         optimum, best = _best(problem, search, budget)
     with steps("other attacks on the recommended plan"):
-        shown, part = recommended((robust, best, *baselines)), budget.part(ATTACK_SHARE)
+        shown, part = recommended((robust, best, *baselines)), budget.part(SHARES.attack)
         views = undisturbed(budget, lambda: views_of(problem, shown, part))
     with steps("curvature and guarantees"):
         k = c = None
         sure: dict[str, Guarantee] = {}
         if guarantees != "none":
             rest = QUICK.within(budget, process_time() - busy_since) if guarantees == "quick" else budget
-            k, c = undisturbed(budget, lambda: _curvatures(problem, rest.part(CURVATURE_SHARE)))
+            k, c = undisturbed(budget, lambda: _curvatures(problem, rest.part(SHARES.curvature)))
             sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
     with steps("certificate"):
         proof, failure = _certified(problem, optimum, certificate, whole, source)
@@ -230,7 +244,7 @@ def bound(
         created=began.isoformat(timespec="seconds"),
         source=source,
         views=views,
-        seeds={"random": RANDOM_SEED},
+        seeds={"random": SHARES.seed},
         interrupted=whole.stop() is Stop.INTERRUPTED,
         remarks=_remarks(problem)
         + _remarks_on(params)
@@ -251,15 +265,15 @@ def _planned(problem: Problem, single: FloatArray, budget: Budget) -> tuple[int,
     """RATT's plan under attack, and what it took the link attacks to be worth; ``single`` (E,) individual values."""
     alpha_cs = equivalent_sensing_attacks(problem, budget)
     plan = replace(bait_and_greedy(problem, problem.alpha_s + alpha_cs, budget, single), alpha_cs=alpha_cs)
-    return alpha_cs, undisturbed(budget, lambda: assess(problem, "ratt", plan, budget.part(ATTACK_SHARE)))
+    return alpha_cs, undisturbed(budget, lambda: assess(problem, "ratt", plan, budget.part(SHARES.attack)))
 
 
 def _best(problem: Problem, search: Callable[..., MaxMinResult], budget: Budget) -> tuple[MaxMinResult, PlanAssessment]:
     """The search for the best plan, and that plan under attack."""
-    optimum = undisturbed(budget, lambda: search(budget=budget.part(OPTIMUM_SHARE)))
+    optimum = undisturbed(budget, lambda: search(budget=budget.part(SHARES.optimum)))
     found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
     known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
-    return optimum, undisturbed(budget, lambda: known(budget=budget.part(ATTACK_SHARE)))
+    return optimum, undisturbed(budget, lambda: known(budget=budget.part(SHARES.attack)))
 
 
 def _certified(
@@ -307,15 +321,15 @@ def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator
     plans = {
         "greedy": bait_and_greedy(problem, 0, budget, single),
         "myopic": bait_and_greedy(problem, problem.n_robots, budget, single),
-        "random": random_plan(problem, seed=RANDOM_SEED),
+        "random": random_plan(problem, seed=SHARES.seed),
     }
     for name, plan in plans.items():
-        yield assess(problem, name, plan, budget.part(ATTACK_SHARE))
+        yield assess(problem, name, plan, budget.part(SHARES.attack))
     if not budget.is_over:
-        unattacked = nonrobust_search(problem, budget=budget.part(NONROBUST_SHARE))
+        unattacked = nonrobust_search(problem, budget=budget.part(SHARES.nonrobust))
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
-            yield assess(problem, "nonrobust_optimum", plan, budget.part(ATTACK_SHARE))
+            yield assess(problem, "nonrobust_optimum", plan, budget.part(SHARES.attack))
 
 
 def _own_plans(
@@ -332,7 +346,7 @@ def _own_plans(
         except InputError as error:
             raise InputError(f"planners[{name!r}]: {error.argument}", error.rule, error.value) from None
         plan = Plan(elements=elements, evaluations=cost)
-        yield undisturbed(budget, partial(assess, problem, name, plan, budget.part(ATTACK_SHARE)))
+        yield undisturbed(budget, partial(assess, problem, name, plan, budget.part(SHARES.attack)))
 
 
 def _check_planners(planners: Mapping[str, Planner]) -> None:
@@ -411,8 +425,8 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
     f, owners = problem.objective, problem.robot
     try:
         if f.is_submodular:
-            return curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget), None
-        return None, total_curvature(f, owners, gap=CURVATURE_GAP, time_limit=None, budget=budget)
+            return curvature(f, owners, gap=SHARES.curvature_gap, time_limit=None, budget=budget), None
+        return None, total_curvature(f, owners, gap=SHARES.curvature_gap, time_limit=None, budget=budget)
     except InputError:
         if not isinstance(f, InformationObjective):
             raise
@@ -423,7 +437,7 @@ def _guarantees(
     problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
-    budget = budget.part(CURVATURE_SHARE)
+    budget = budget.part(SHARES.curvature)
     if problem.at_most is not None:
         return {}
     found = all_guarantees(problem, alpha_cs, k=k, c=c, budget=budget)

@@ -39,29 +39,34 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.task import AttackResult
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
-__all__ = ["RefinedPlan", "refined"]
-
-SECONDS = 1.0
-PROOF_SHARE, PROOF_SHARE_OF_ALL = 0.4, 0.05
-"""Share of the remaining time for proving the worst case of the best plan; less if all attacks that matter are
-known."""
-BEST_SHARE = 0.7
-"""Share of the proof's time for the best plan; the rest is for an attack on RATT's plan that leaves it no more."""
-PROOF_NODES = 500_000
-"""Nodes of one exact attack: nearly all on teams of up to 30 robots close in less."""
-PATIENCE = 200
-"""Kicks in vain after which a search without a limit of time ends: teams of six robots take a tenth of a second."""
+__all__ = ["RefinedParams", "RefinedPlan", "refined"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefinedParams:
-    """Time for the last exact attacks, beyond the limit: more proves more of the plan, and overruns it by more.
+    """Times of the proof of a plan's worst case: more proves more of the plan, and searches fewer others.
+
+    ``proof`` : share of the remaining time for proving the worst case of the best plan; ``short_proof`` : if all
+        attacks that matter are known, and for functions known by their values
+    ``best`` : share of the proof's time for the best plan; the rest is for an attack on RATT's plan
+    ``nodes`` : of one exact attack: nearly all on teams of up to 30 robots close in less
+    ``patience`` : kicks in vain that end a search without a limit of time
+    ``search`` : parameters of the best plan, its kicks and quick attacks
+
+    For the last exact attacks, beyond the limit, which more of it overruns by more:
 
     ``last_share`` : of the limit [1]; ``last_seconds`` : at least [s]; ``least_share`` : but no more than this share
     of a short limit [1]; ``interrupted_seconds`` : after an interrupt instead [s]: a user waits for it
     """
 
+    proof: float = 0.4
+    short_proof: float = 0.05
+    best: float = 0.7
+    nodes: int = 500_000
+    patience: int = 200
+    search: MaxMinParams | None = None
     last_share: float = 0.08
     last_seconds: float = 0.4
     least_share: float = 0.5
@@ -74,9 +79,6 @@ class RefinedParams:
         if own.time_limit is None:
             return self.last_seconds
         return max(self.last_share * own.time_limit, min(self.last_seconds, self.least_share * own.time_limit))
-
-
-PARAMS = RefinedParams()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -103,12 +105,13 @@ class RefinedPlan(Plan):
 def refined(
     problem: Problem,
     *,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = 1.0,
     start: ArrayLike | Plan | None = None,
     seed: int = 0,
     max_kicks: int | None = None,
     budget: Budget | None = None,
     on_improvement: Callable[[IntArray], object] | None = None,
+    params: RefinedParams | None = None,
 ) -> RefinedPlan:
     """Improve RATT's plan against the attacks that hurt it; never return a plan that is worse.
 
@@ -126,24 +129,27 @@ def refined(
     max_kicks : with it, and no limit of time, the plan is the same on every run
     budget : an outer search's budget: its seconds and interrupts count too
     on_improvement : called with RATT's plan (N,), and then with each one that the attacks known rate above all before
+    params : shares of the time and limits; they decide what is found and proved, not whether the bracket holds
 
     Raises
     ------
     InputError : a limit is negative, or ``start`` is no plan.
     """
+    params = RefinedParams() if params is None else params
     if not isinstance(check_problem(problem, knows_at_most=True).objective, InformationObjective):
-        return _refined_by_values(problem, Budget.inside(budget, time_limit), start, (seed, max_kicks), on_improvement)
-    problem = prepared(problem)
+        own, kicked = Budget.inside(budget, time_limit), (seed, max_kicks)
+        return _refined_by_values(problem, own, start, kicked, on_improvement, params=params)
+    asked, problem = problem, prepared(problem)
     kicks_left = None if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     rng = np.random.default_rng(check_integer("seed", seed, low=0))
     given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
     own = Budget.inside(budget, time_limit)
-    first = ratt(problem, alpha_cs=alpha_cs_in_share(problem, own), budget=own)
+    first = ratt(asked, alpha_cs=alpha_cs_in_share(problem, own), budget=own)
     few = undominated(problem)
     if on_improvement is not None:
         on_improvement(first.elements)
     among = dominators(problem, few.kept)
-    incumbent = Incumbent(few, OutcomePool(few), among[first.elements], own)
+    incumbent = Incumbent(few, OutcomePool(few), among[first.elements], own, params.search)
     kicks, stop = 0, Stop.HEURISTIC
     try:
         if on_improvement is not None:
@@ -151,8 +157,8 @@ def refined(
         incumbent.pool.list_all(incumbent.params.outcomes)
         others = [planner(problem, budget=own).elements for planner in (greedy, myopic)]
         _meet(incumbent, [among[plan] for plan in (first.elements, *given, *others)])
-        kicks = _walked(incumbent, rng, own, kicks_left)
-        _prove(incumbent, own)
+        kicks = _walked(incumbent, rng, own, kicks_left, params)
+        _prove(incumbent, own, params)
         break_ties(incumbent, own)
     except OutOfBudget as out:
         stop = out.stop
@@ -160,18 +166,18 @@ def refined(
         stop = own.interrupt()
     stop = own.stop() or stop
     starts = [among[plan] for plan in (first.elements, *given)]
-    _prove_last(incumbent, starts, own)
+    _prove_last(incumbent, starts, own, params)
     return undisturbed(own, lambda: _best(problem, few, incumbent, starts, first, kicks, stop))
 
 
-def _prove_last(incumbent: Incumbent, starts: list[IntArray], own: Budget) -> None:
+def _prove_last(incumbent: Incumbent, starts: list[IntArray], own: Budget, params: RefinedParams) -> None:
     """Attack the best plan known, then those it began with, in a time of their own if the limit left none for it."""
     if incumbent.is_proved and not _can_be_worse(incumbent, starts):
         return
     with suppress(OutOfBudget):
-        last = Budget.apart(PARAMS.last(own))
+        last = Budget.apart(params.last(own))
         if not incumbent.is_proved:
-            incumbent.proved.attack(incumbent.candidates.best, last.part(BEST_SHARE))
+            incumbent.proved.attack(incumbent.candidates.best, last.part(params.best))
         for plan in starts:
             if _can_be_worse(incumbent, [plan]):
                 incumbent.proved.attack(plan, last)
@@ -189,6 +195,8 @@ def _refined_by_values(
     start: ArrayLike | Plan | None,
     kicks: tuple[int, int | None],
     on_improvement: Callable[[IntArray], object] | None,
+    *,
+    params: RefinedParams,
 ) -> RefinedPlan:
     """Improve RATT's, the greedy and the myopic plan of any non-decreasing function, known by its values."""
     seed, max_kicks = kicks
@@ -200,7 +208,7 @@ def _refined_by_values(
     stop = Stop.HEURISTIC
     try:
         search.start(None)
-        search.refine(given, 1 - PROOF_SHARE_OF_ALL, most, PATIENCE if is_patient else np.inf)
+        search.refine(given, 1 - params.short_proof, most, params.patience if is_patient else np.inf)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -232,22 +240,24 @@ def _meet(incumbent: Incumbent, plans: list[IntArray]) -> None:
         incumbent.offer(plan)
 
 
-def _prove(incumbent: Incumbent, budget: Budget) -> None:
+def _prove(incumbent: Incumbent, budget: Budget, params: RefinedParams) -> None:
     """Attack the best plan exactly, and the next best if that one falls; then RATT's, until it is known to be worse."""
-    first, proved, part = incumbent.candidates.first, incumbent.proved, budget.part(BEST_SHARE)
+    first, proved, part = incumbent.candidates.first, incumbent.proved, budget.part(params.best)
     while not incumbent.is_proved and not part.is_over:
         known = len(incumbent.pool)
-        proved.attack(incumbent.candidates.best, part.part(max_nodes=PROOF_NODES))
+        proved.attack(incumbent.candidates.best, part.part(max_nodes=params.nodes))
         if len(incumbent.pool) == known:
             break
     if proved.lower < incumbent.pool.plan_value(first) and not budget.is_over:
-        incumbent.adversary.attack(first, budget.part(max_nodes=PROOF_NODES), proved.lower)
+        incumbent.adversary.attack(first, budget.part(max_nodes=params.nodes), proved.lower)
 
 
-def _walked(incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most: int | None) -> int:
+def _walked(
+    incumbent: Incumbent, rng: np.random.Generator, budget: Budget, most: int | None, params: RefinedParams
+) -> int:
     """Walk for as long as there is time, that for the proof left aside; how many kicks that were."""
-    until = budget.part(1 - (PROOF_SHARE_OF_ALL if incumbent.pool.complete else PROOF_SHARE))
-    patience = PATIENCE if most is None and np.isinf(budget.seconds_left) else None
+    until = budget.part(1 - (params.short_proof if incumbent.pool.complete else params.proof))
+    patience = params.patience if most is None and np.isinf(budget.seconds_left) else None
     return Walk(incumbent, rng).run(until, most, patience)
 
 
