@@ -377,7 +377,7 @@ def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
         assert run([command, "--help"]) == 0
         assert "--help" in capsys.readouterr().out
     assert run(["--version"]) == 0
-    assert capsys.readouterr().out.strip() == "0.1.0"
+    assert capsys.readouterr().out.strip() == "1.0.0"
 
 
 def test_decentralise_writes_plan_costs_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
