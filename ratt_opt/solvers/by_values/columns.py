@@ -20,10 +20,14 @@ WHOLE = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Node:
-    """Plans of which at least ``lower`` and at most ``upper`` (columns,) robots choose elements of each column."""
+    """Plans of which at least ``lower`` and at most ``upper`` (columns,) robots choose elements of each column.
+
+    ``is_first`` : nothing is decided but that robots choose different columns, at most; what follows inherits its rows
+    """
 
     lower: FloatArray
     upper: FloatArray
+    is_first: bool = False
 
 
 class Columns:
@@ -77,11 +81,7 @@ class Columns:
 
     def root(self) -> Node:
         """All plans."""
-        return Node(np.zeros(len(self.kinds)), self.sizes[self.kinds])
-
-    def middle(self) -> FloatArray:
-        """(columns,) the fractional plan that has all elements alike."""
-        return self.middle_of(self.root())
+        return Node(np.zeros(len(self.kinds)), self.sizes[self.kinds], is_first=True)
 
     def middle_of(self, node: Node) -> FloatArray:
         """(columns,) a fractional plan that has all elements of a node alike."""
@@ -116,11 +116,15 @@ class Columns:
                     break
         return total
 
-    def children(self, node: Node, point: FloatArray) -> list[Node]:
+    def children(self, node: Node, point: FloatArray, *, apart: bool = False) -> list[Node]:
         """Divide a node at a fractional plan: into all elements of a robot, or by how many robots choose a column.
 
-        None if it is one plan, up to exchanges of equal elements.
+        None if it is one plan, up to exchanges of equal elements. ``apart`` : whether plans in which no two robots
+        choose a column come first, and all others by a column that two do
         """
+        shared = np.flatnonzero((node.upper > 1) & (node.lower < 2)) if apart else np.array([], dtype=np.int64)
+        if len(shared):
+            return [child for child in self._apart(node, shared) if self._has_plans(child)]
         open_kinds = [k for k, own in enumerate(self.of_kind) if self._is_open(node, k, own)]
         if not open_kinds:
             return []
@@ -129,6 +133,17 @@ class Columns:
             own = self.of_kind[kind]
             return [self._only(node, own, column) for column in own[node.upper[own] > 0].tolist()]
         return self._by_number(node, point, np.concatenate([self.of_kind[k] for k in open_kinds]))
+
+    @staticmethod
+    def _apart(node: Node, shared: IntArray) -> list[Node]:
+        upper = node.upper.copy()
+        upper[shared] = 1.0
+        children = [Node(node.lower, upper, is_first=node.is_first)]
+        for column in shared.tolist():
+            lower = node.lower.copy()
+            lower[column] = 2.0
+            children.append(Node(lower, node.upper))
+        return children
 
     def _is_open(self, node: Node, kind: int, own: IntArray) -> bool:
         return bool(node.lower[own].sum() < self.sizes[kind] and (node.upper[own] > node.lower[own]).sum() > 1)

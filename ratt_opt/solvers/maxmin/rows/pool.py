@@ -79,11 +79,15 @@ class InequalityPool:
     def __len__(self) -> int:
         return len(self._origins)
 
-    def by_robot(self, selection: FloatArray) -> FloatArray:
-        """(N, K) what each robot's relaxed choice (E,) adds to each inequality, sorted by target."""
+    def by_robot(self, selection: FloatArray, owner: IntArray | None = None) -> FloatArray:
+        """(N, K) what each robot's relaxed choice (E,) adds to each inequality, sorted by target.
+
+        ``owner`` : (E,) numbers from 0 that take the place of robots
+        """
+        owner = self._robot if owner is None else owner
         chosen = np.flatnonzero(selection)
-        mixed = np.zeros((len(chosen), int(self._robot.max()) + 1))
-        mixed[np.arange(len(chosen)), self._robot[chosen]] = selection[chosen]
+        mixed = np.zeros((len(chosen), int(owner.max()) + 1))
+        mixed[np.arange(len(chosen)), owner[chosen]] = selection[chosen]
         added = self._scores[: len(self), chosen] @ mixed
         return np.ascontiguousarray(added[self._order].T)
 
@@ -120,12 +124,11 @@ class InequalityPool:
         constant = _rounded_up(constants, scores, len(group))
         return Row(group, constant, scores, tuple(self._origins[k] for k in lowest.tolist()))
 
-    def combined(self, left: FloatArray, selection: FloatArray) -> tuple[float, FloatArray]:
-        """Constant and scores (E,) of the lowest row at a relaxed choice (E,), of robots left in part (N,)."""
-        inside = left[self._robot]
+    def combined(self, inside: FloatArray, selection: FloatArray) -> tuple[float, FloatArray]:
+        """Constant and scores (E,) of the lowest row at a relaxed choice (E,), of elements left in part (E,)."""
         lowest = self._lowest(selection * inside)
         scores, constants = self._scores[lowest].sum(axis=0) * inside, self._constants[lowest]
-        return _rounded_up(constants, scores, len(left)), scores
+        return _rounded_up(constants, scores, int(self._robot.max()) + 1), scores
 
     def _lowest(self, selection: FloatArray) -> IntArray:
         """(M,) the lowest inequality of each target at a relaxed choice (E,)."""
