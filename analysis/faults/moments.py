@@ -110,17 +110,17 @@ def _network(n_robots: int, alpha_s: int, alpha_c: int, objective: str = "trace"
     return scenario.problem(objective)
 
 
-def _own(n_robots: int, controls: int) -> ro.Problem:
+def _own(n_robots: int, controls: int, alpha_s: int = 2, alpha_c: int = 4) -> ro.Problem:
     rng = np.random.default_rng(4)
     graph = nx.random_geometric_graph(n_robots, 0.5, seed=4)
     robot = np.repeat(np.arange(n_robots), controls)
-    return ro.Problem(Square(rng.random(len(robot))), robot, graph, 2, min(4, graph.number_of_edges()))
+    return ro.Problem(Square(rng.random(len(robot))), robot, graph, alpha_s, min(alpha_c, graph.number_of_edges()))
 
 
 def _searches() -> dict[str, Callable[[], Any]]:
     """Searches that take seconds and more, by name."""
     dense, large = (ro.random_scenario(n, 8, alpha_s=n // 5, alpha_c=3 * n, seed=2).problem("maxeig") for n in (30, 60))
-    network, small, own, larger = _network(30, 6, 20), _network(8, 2, 6), _own(14, 2), _own(24, 2)
+    network, small, own, larger = _network(30, 6, 20), _network(8, 2, 6), _own(14, 2), _own(24, 2, 5, 8)
     spatial = _spatial()
     plans = {id(p): ro.myopic(p).elements for p in (dense, large, network, small, own, larger, spatial)}
 
@@ -146,7 +146,7 @@ def _searches() -> dict[str, Callable[[], Any]]:
         "breaking_budgets": lambda: ro.breaking_budgets(network, plans[id(network)], 1.0),
         "attack_survey": lambda: ro.attack_survey(network, plans[id(network)]),
         "total_curvature": lambda: ro.total_curvature(network.objective, network.robot, gap=1e-9, time_limit=None),
-        "total_curvature, own function": lambda: ro.total_curvature(own.objective, time_limit=None),
+        "total_curvature, own function": lambda: ro.total_curvature(_own(10, 2).objective, time_limit=None),
         "curvature": lambda: ro.curvature(network.objective, network.robot, gap=1e-9, time_limit=None),
         "submodularity_ratio": lambda: ro.submodularity_ratio(own.objective, own.robot, time_limit=None),
         "generalised_curvature": lambda: ro.generalised_curvature(own.objective, own.robot, time_limit=None),

@@ -70,10 +70,10 @@ def worst_case_attack(
       looked at. That closes any network within seconds. For a function of your own it relies on nothing, once all
       sets are valued.
     - Larger teams rely on a non-decreasing objective. The three criteria are; functions of your own are not checked.
-    - Give a limit for more than 24 robots: on networks of 50 some attacks take hours to close. With
+    - Give a limit for more than 24 robots (20 for functions of your own): some attacks take hours to close. With
       ``brief`` and no limit, dual prices stop after half a million nodes.
-    - Without a limit ``HEURISTIC`` says that no stage is left that could close the bracket. That happens to functions
-      and criteria of your own, and on complete graphs with very many vectors of group sizes.
+    - ``HEURISTIC`` says that no stage is left that could close the bracket. That happens on complete graphs with very
+      many vectors of group sizes, and with ``brief``.
 
     A keyboard interrupt or a spent budget returns the bracket reached. If the user interrupts before any attack is
     known, the result is the team without an attack and, as lower end, the value of no measurement.

@@ -16,8 +16,8 @@ class BranchAndBoundStage(Stage[AttackState]):
     name = "branch and bound"
 
     def applies(self, attack: AttackState) -> bool:
-        """A limit."""
-        return attack.is_limited
+        """A limit, or no other search asks."""
+        return attack.is_limited or not attack.is_inner
 
     def run(self, attack: AttackState) -> Stop:
         """Branch and bound over all attacks."""
@@ -43,5 +43,5 @@ class BranchAndBoundOfOwnCriterionStage(BranchAndBoundStage):
     """Stage for a criterion without compiled code."""
 
     def applies(self, attack: AttackState) -> bool:
-        """Criterion of one's own, limit of time."""
-        return not attack.has_prices and attack.has_time_limit
+        """Criterion of one's own; a limit of time, or no other search asks."""
+        return not attack.has_prices and (attack.has_time_limit or not attack.is_inner)
