@@ -5,6 +5,7 @@ Notation, per target: ``<A, B> = tr(A B)`` and ``L(S) = prior^{-1} + sum of the 
 
 from __future__ import annotations
 
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flint import arb, fmpq, fmpq_mat
@@ -30,16 +31,28 @@ class Bound(NamedTuple):
     constant: Any
 
 
+class Seers(NamedTuple):
+    """Elements with information about one target, and the entries of their matrices, a row each."""
+
+    elements: tuple[int, ...]
+    matrices: fmpq_mat
+
+
 class Tangent(NamedTuple):
-    """``phi_j(S) <= constant + sum of scores[e] over e in S`` for one target ``j``; no entry of ``scores`` is 0 there.
+    """``phi_j(S) <= constant + sum of <weight, information[e]> over e in S`` for one target ``j``.
 
     The value of one target is its term of the trace or of the log-det. For the max-eigenvalue it is what that would be
     if the target's posterior were the largest, so no less than the criterion.
     """
 
     target: int
-    scores: dict[int, fmpq]
+    weight: fmpq_mat
     constant: Any
+    seers: Seers
+
+    def scores(self) -> dict[int, fmpq]:
+        """Scores of the elements that see the target; computed anew, as a file may state many tangents."""
+        return dict(zip(self.seers.elements, (self.seers.matrices * self.weight).entries(), strict=True))
 
 
 def seers_of(about: Statement, target: int) -> tuple[int, ...]:
@@ -70,22 +83,23 @@ def read_points(about: Statement, points: object) -> list[Bound]:
 def read_tangents(about: Statement, tangents: object) -> list[Tangent]:
     """Return the tangents of single targets: ``[target, Y]``, or ``[target, t, v]`` as points of the max-eigenvalue."""
     given = array("tangents", tangents)
-    found, seen = [], dict[int, tuple[tuple[int, ...], fmpq_mat]]()
+    reading.check_size("tangents", len(given) * about.d**2, reading.MOST_CELLS)
+    found, seers = list[Tangent](), cache(partial(_seers, about))
     for stated in given:
         tick()
         j, *touch = array("tangent", stated, 3 if about.objective == "maxeig" else 2)
         j = index("tangent target", j, len(about.prior))
-        if j not in seen:
-            seers = seers_of(about, j)
-            columns = [x for e in seers for x in about.information[e][j].entries()]
-            seen[j] = seers, fmpq_mat(len(seers), about.d**2, columns)
         weight, constant = _of_target(about, j, touch if about.objective == "maxeig" else touch[0])
-        seers, matrices = seen[j]
-        scores = (matrices * fmpq_mat(about.d**2, 1, weight.entries())).entries()
-        for x in (*scores, *([constant] if isinstance(constant, fmpq) else [])):
+        for x in (*weight.entries(), *([constant] if isinstance(constant, fmpq) else [])):
             hold(x)
-        found.append(Tangent(j, dict(zip(seers, scores, strict=True)), constant))
+        found.append(Tangent(j, fmpq_mat(about.d**2, 1, weight.entries()), constant, seers(j)))
     return found
+
+
+def _seers(about: Statement, target: int) -> Seers:
+    elements = seers_of(about, target)
+    entries = [x for e in elements for x in about.information[e][target].entries()]
+    return Seers(elements, fmpq_mat(len(elements), about.d**2, entries))
 
 
 def _of_all_targets(about: Statement, point: object) -> tuple[list[fmpq], Any]:

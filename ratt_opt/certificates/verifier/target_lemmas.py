@@ -32,6 +32,8 @@ __all__ = ["TargetInequalities", "TargetLemma", "least_constant", "options_of"]
 ZERO = fmpq(0)
 MOST_TERMS = 20_000_000
 """Scores that all rows together add up: seconds, and what one file may make of lists that it names again and again."""
+MOST_SCORES = 4_000_000
+"""Scores of rows and of the tangents that they name, in memory at once: half a gigabyte."""
 
 
 class TargetLemma(NamedTuple):
@@ -46,7 +48,8 @@ class TargetInequalities:
     """Tangents, lemmas and rows of an upper proof, each checked as it is read."""
 
     def __init__(self, about: Statement, tangents: object, lemmas: object, usual: object) -> None:
-        self._about, self._terms, self._seers = about, 0, cache(partial(seers_of, about))
+        self._about, self._terms, self._cells, self._seers = about, 0, 0, cache(partial(seers_of, about))
+        self._kept: dict[int, dict[int, fmpq]] = {}
         self.marginals = cache(partial(MarginalBounds, about))
         self.tangents = read_tangents(about, tangents)
         self.lemmas = [self._lemma(k, lemma) for k, lemma in enumerate(array("lemmas", lemmas))]
@@ -61,25 +64,41 @@ class TargetInequalities:
         used = named if about.objective == "maxeig" else self._usual | named
         whole = len(used) == (1 if about.objective == "maxeig" else len(about.prior))
         need(whole, "upper proof: a row does not have one inequality of each target")
-        scores, constant = [fmpq(0)] * len(about.owner), fmpq(0)
-        self._terms += sum(1 + len(inequality.scores) for inequality in used.values()) + len(about.owner)
+        terms = [(inequality.constant, self._scores_of(inequality)) for inequality in used.values()]
+        self._terms += sum(1 + len(scores) for _, scores in terms)
+        self._cells += len(about.owner)
         check_size("rows", self._terms, MOST_TERMS)
-        for inequality in used.values():
+        check_size("rows", self._cells, MOST_SCORES)
+        scores, constant = [fmpq(0)] * len(about.owner), fmpq(0)
+        for summand, own in terms:
             tick()
-            constant += inequality.constant
-            for e, score in inequality.scores.items():
+            constant += summand
+            for e, score in own.items():
                 scores[e] += score
         for score in scores:
             hold(score)
         return Bound(scores, constant)
 
+    def _scores_of(self, inequality: Tangent | TargetLemma) -> dict[int, fmpq]:
+        """Scores, kept once they were asked for: rows share their inequalities."""
+        if isinstance(inequality, TargetLemma):
+            return inequality.scores
+        if id(inequality) not in self._kept:
+            found = self._kept[id(inequality)] = inequality.scores()
+            self._cells += len(found)
+            for score in found.values():
+                hold(score)
+        return self._kept[id(inequality)]
+
     def _named(self, where: str, numbers: object) -> dict[int, Tangent | TargetLemma]:
         """Inequalities by number, tangents first, as a record by target."""
-        known: list[Tangent | TargetLemma] = [*self.tangents, *self.lemmas]
-        named = [known[index(where, k, len(known))] for k in array(where, numbers)]
-        by_target = {inequality.target: inequality for inequality in named}
-        need(len(by_target) == len(named), f"upper proof: {where} names two inequalities of a target")
-        return by_target
+        known, found = len(self.tangents), dict[int, Tangent | TargetLemma]()
+        for number in array(where, numbers):
+            k = index(where, number, known + len(self.lemmas))
+            inequality = self.tangents[k] if k < known else self.lemmas[k - known]
+            need(inequality.target not in found, f"upper proof: {where} names two inequalities of a target")
+            found[inequality.target] = inequality
+        return found
 
     def _lemma(self, number: int, given: object) -> TargetLemma:
         about, n = self._about, len(self._about.owner)
@@ -119,7 +138,7 @@ def least_constant(
         else:
             tangent = tangents[index("lemma leaf", node, len(tangents))]
             need(tangent.target == lemma.target, "upper proof: a leaf of a lemma is a tangent of another target")
-            bound, gains = tangent.constant, tangent.scores
+            bound, gains = tangent.constant, tangent.scores()
         for own in case.values():
             bound += largest([ZERO if e is None else gains.get(e, ZERO) - lemma.scores.get(e, ZERO) for e in own])
         bounds.append(bound)

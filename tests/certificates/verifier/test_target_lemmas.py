@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from flint import ctx
 
-from ratt_opt import Problem, ProofError, TraceObjective, exhaustive_optimum, verify_certificate
+from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, exhaustive_optimum, verify_certificate
 from ratt_opt.certificates import stated_inequalities
 from ratt_opt.certificates.stated_inequalities import StatedInequalities
 from ratt_opt.certificates.stated_problem import statement_of
 from ratt_opt.certificates.target_trees import TreeParams, target_trees
+from ratt_opt.certificates.verifier import target_lemmas
 from ratt_opt.certificates.verifier.target_lemmas import TargetInequalities
 from tests.certificates import lemmas
 from tests.certificates.mutants import accepted, changed, is_false, places, variants
@@ -199,3 +200,13 @@ def test_no_mutated_lemma_row_or_spacing_hides_a_false_claim(tmp_path):
 @pytest.mark.slow
 def test_no_mutated_lemma_row_or_spacing_hides_a_false_claim_at_length(tmp_path):
     assert sweep(range(40), 0.3, tmp_path) >= 5_000
+
+
+@pytest.mark.parametrize("limit", ["MOST_TERMS", "MOST_SCORES"])
+def test_rows_that_take_too_much_are_refused(limit, tmp_path, monkeypatch):
+    """A short file can name the same inequalities in many rows."""
+    problem, rng = drawn(3, "trace")
+    lemmas.certified_by_rows(problem, lemmas.by_rows(problem, rng), tmp_path / "rows.json")
+    monkeypatch.setattr(target_lemmas, limit, 3)
+    with pytest.raises(FileFormatError, match="size of rows must be at most 3"):
+        verify_certificate(tmp_path / "rows.json")

@@ -1,17 +1,22 @@
-"""Two thousand tiny teams, with rows and hulls from the root: both ends against every plan and every attack."""
+"""Two thousand tiny teams, with rows and hulls from the root: ends and certificates against every plan and attack."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt import LogDetObjective, Problem, TraceObjective, exhaustive_optimum
+from ratt_opt import LogDetObjective, Problem, TraceObjective, certify, exhaustive_optimum
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.solve import solve_in_coordinates
 from ratt_opt.solvers.maxmin.stages.schedule import TREES_ALONE
 from tests.solvers.maxmin.proofs import proved_upper
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 pytestmark = pytest.mark.slow
 
@@ -47,7 +52,7 @@ def drawn(rng: np.random.Generator) -> Problem:
 
 
 @pytest.mark.parametrize("block", range(20))
-def test_both_ends_meet_at_the_best_of_all_plans(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_both_ends_meet_at_the_best_of_all_plans(block: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(RowSeparation, "first_node", lambda _: 0)
     rng = np.random.default_rng([93, block])
     for _ in range(100):
@@ -60,3 +65,6 @@ def test_both_ends_meet_at_the_best_of_all_plans(block: int, monkeypatch: pytest
         assert best <= found.upper + rounding
         assert found.upper - found.lower <= 2e-6 * found.upper + rounding
         assert proved_upper(problem, found.proof) >= best - rounding
+        made = certify(problem, found, tmp_path / "best.json")
+        assert made.verified.lower <= best + rounding
+        assert best - rounding <= made.verified.upper <= found.upper * (1 + 1e-7) + rounding
