@@ -56,7 +56,7 @@ One interval in twenty misses by chance. Missions have {steps} steps, and their 
 half, share no step. Max-min plans are searched for ten nodes a step and refined ones take twenty kicks, so that every
 machine flies the same missions. The main cell (bold) is the demo's kind of team: a view of 60 degrees, a reach of 40 m,
 the camera's noise, six targets, links within 45 m, attacks that are renewed in every step. The others differ from it as
-said.
+said. The rows were made with {made}.
 """
 ROOT = Path(__file__).parents[2]
 NAMES = {"ratt": "RATT", "maxmin": "max-min", "refined": "refined", "greedy": "greedy", "myopic": "myopic"}
@@ -77,7 +77,9 @@ def page(folder: Path) -> str:
     """Return the page of tables, of the studies whose results are in ``folder``."""
     flown = {study: rows for study in STUDIES if (rows := _rows(folder, study))}
     trials = {study: len({row["trial"] for row in rows}) for study, rows in flown.items()}
-    parts = [OPENING.format(steps=STEPS, main=trials.get(MAIN, 0), varied=trials.get(VARIED, 0))]
+    made = sorted({row["versions"] for rows in flown.values() for row in rows})
+    told = {"steps": STEPS, "made": "; ".join(made) or "nothing yet"}
+    parts = [OPENING.format(main=trials.get(MAIN, 0), varied=trials.get(VARIED, 0), **told)]
     if rows := _rows(folder, bite.STUDY):
         parts += ["\n".join(_bites(rows))]
     if rows := _rows(folder, ONE_STEP):

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from analysis.limited_views import bite, flights, one_step, page, worth
+from analysis.limited_views import bite, claim, flights, one_step, page, worth
 from analysis.limited_views.flights import case_of, figures_of, scenario_of, sighted
 from analysis.limited_views.verdicts import Outcome, outcome, relative_change
+from analysis.measurements import values
 from ratt_opt.studies.cases import Seeds
 from ratt_opt.studies.engine import run
 from ratt_opt.studies.progress import Progress
@@ -126,6 +127,7 @@ def test_the_page_says_what_the_rows_say(results: Path) -> None:
     shares = [(column(first, f"{name}/worst/value") / column(first, "optimum/upper")).mean() for name in ONE_STEP]
     assert f"| main cell | 3 | {' | '.join(f'{share:.3f}' for share in shares)} |" in text
     assert all(share <= 1 for share in shares)
+    assert f"The rows were made with {rows[0]['versions']}." in text
 
 
 def test_the_page_is_that_of_what_was_run(tmp_path: Path) -> None:
@@ -156,6 +158,10 @@ def test_the_main_cell_is_the_demo_and_what_the_rule_chose() -> None:
     text = (page.ROOT / "docs" / "researchers" / "limited_views_tables.md").read_text(encoding="utf-8")
     assert "| **45 m** | **40 m** | 60 |" in text
     assert flights.MAIN.cases == (case_of(links=45, reach=40),)
+    assert claim.STUDY.cases == flights.MAIN.cases
+    known = values()
+    low, high = known["mission_error_interval"].low, known["mission_error_interval"].high
+    assert f"| -{known['mission_error'].low:g} [-{high:g}, -{low:g}] pays |" in text, "not the missions of the claim"
 
 
 def rows_of_worth(effects: dict[tuple[str, str], float]) -> list[dict[str, str]]:
