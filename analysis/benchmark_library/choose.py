@@ -8,7 +8,7 @@ for. Of each family the smallest closed candidate is curated. MIPLIB 2017 is the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from analysis.benchmark_library.solve import read_journal
@@ -64,8 +64,10 @@ def build(pool: Path, folder: Path, params: ChoiceParams) -> BenchmarkLibrary:
     library = _kept(folder, {line["name"] for line in chosen})
     for line in chosen:
         name = line["name"]
-        instance = read_instance(pool / f"{name}.instance.json.xz")
-        library = library.add(instance, hardness=line["hardness"], curated=name in curated)
+        instance, entry = read_instance(pool / f"{name}.instance.json.xz"), library.entries.get(name)
+        flags = {"hardness": line["hardness"], "curated": int(name in curated)}
+        if entry is None or entry != replace(entry, sha256=hash_of(instance.document), **flags):
+            library = library.add(instance, hardness=line["hardness"], curated=name in curated)
         record = read_document(pool / f"{name}.record.json.xz")
         if name not in library.best or library.best[name].certificate != hash_of(record):
             library, _ = submit_record(library, record, who=f"ratt_opt {line['who']}")

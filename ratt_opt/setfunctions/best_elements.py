@@ -18,6 +18,8 @@ from ratt_opt.setfunctions.decomposition import Overestimator, rounded_up
 from ratt_opt.setfunctions.sums import SumFunction
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import ArrayLike
 
 __all__ = ["BestElements", "Coverage", "FacilityLocation"]
@@ -78,6 +80,16 @@ class BestElements(SumFunction):
         reached = np.cumsum(share[order]) >= 1.0
         level = float(u[order[int(reached.argmax())]]) if reached.any() else 0.0
         return Overestimator(level, rounded_up(u - level))
+
+    def items(self) -> Iterator[tuple[BoolArray, float]]:
+        """Items whose coverage the function is: the elements (n,) that cover one, and its weight.
+
+        A part is an item for each step between its utilities, which the elements of at least that utility cover.
+        """
+        for own, weight in zip(self.utility.T, self.weights.tolist(), strict=True):
+            levels = np.unique(own[own > 0]).tolist()
+            for low, level in zip([0.0, *levels], levels, strict=False):
+                yield own >= level, weight * (level - low)
 
     def _of_part(self, part: int) -> FloatArray:
         return np.asarray(self.utility[self.touching(part), part])

@@ -93,7 +93,7 @@ class SumInput(TeamInput):
     utility: tuple[tuple[NonNegative, ...], ...] | None = None
 
     @property
-    def function(self) -> SetFunction:
+    def function(self) -> Coverage | FacilityLocation:
         """Coverage or facility location."""
         given = self.covers if self.kind == "coverage" else self.utility
         field = "covers" if self.kind == "coverage" else "utility"

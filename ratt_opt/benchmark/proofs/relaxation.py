@@ -1,15 +1,12 @@
 """Coverage and facility location as a trace criterion, so that the same certificates prove bounds for them.
 
-An item of weight w that n chosen elements cover counts w if n > 0. Give it a state of one number with prior variance 1
-and let each element that covers it have information q. The trace criterion then counts ``w (1 - 1 / (1 + q n))``: at
-most w, and at least ``w q / (1 + q)`` if n > 0. So for every set of elements, with ``f`` the coverage and ``g`` the
-criterion, ``g <= f <= g (1 + 1/q)``; hence the same for worst cases and for optima. A facility's customer is a tower of
-items: one for each step between its utilities, which elements of at least that utility cover.
+The criterion is that of ``solvers/maxmin/coverage.py``, with a state for each item (equal ones are not merged): for
+every set of elements, with ``f`` the coverage, ``g`` the criterion and q the information, ``g <= f <= g (1 + 1/q)``;
+hence the same for worst cases and for optima.
 """
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +15,6 @@ from ratt_opt.errors import InputError
 from ratt_opt.scenario.information_input import InformationInput, nested
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.benchmark.instances.forms import SumInput
 
 __all__ = ["INFORMATION", "as_information", "counts_whole", "value_at_least", "value_at_most"]
@@ -32,9 +28,14 @@ def as_information(given: SumInput) -> InformationInput:
 
     Raises
     ------
-    InputError : a utility is not whole: differences of others are rounded.
+    InputError : a utility is not whole: differences of others are rounded; or no element is worth anything.
     """
-    covers, weights = _items(given)
+    if given.kind != "coverage" and not counts_whole(given):
+        raise InputError("utility", "must be whole numbers for a certificate", "a fraction")
+    items = list(given.function.items())
+    if not items:
+        raise InputError("utility", "must have an entry above 0 for a certificate", "zeros")
+    covers, weights = np.stack([one for one, _ in items], axis=1), [weight for _, weight in items]
     information = INFORMATION * covers.astype(np.float64)
     return InformationInput(
         prior=nested(np.ones((len(weights), 1, 1))),
@@ -42,7 +43,7 @@ def as_information(given: SumInput) -> InformationInput:
         robot=given.robot,
         alpha_s=given.alpha_s,
         alpha_c=given.alpha_c,
-        weights=tuple(weights.tolist()),
+        weights=tuple(weights),
         links=given.links,
         protected_robots=given.protected_robots,
         protected_links=given.protected_links,
@@ -64,25 +65,3 @@ def value_at_most(given: SumInput, bound: float) -> float:
 def value_at_least(given: SumInput, bound: float) -> float:
     """Lower bound on the sum from one on the criterion."""
     return float(np.ceil(bound)) if counts_whole(given) else bound
-
-
-def _items(given: SumInput) -> tuple[BoolArray, FloatArray]:
-    """Truth values of elements covering items, and the items' weights; items that nobody covers are left out."""
-    if given.kind == "coverage":
-        covers, weights = np.zeros((len(given.robot), len(given.weights or ())), dtype=np.bool_), given.weights
-        for row, items in zip(covers, given.covers or (), strict=True):
-            row[list(items)] = True
-        kept = covers.any(axis=0)
-        return covers[:, kept], np.array(weights, dtype=np.float64)[kept]
-    utility = np.array(given.utility, dtype=np.float64)
-    if not counts_whole(given):
-        raise InputError("utility", "must be whole numbers for a certificate", "a fraction")
-    columns, weights_of = [], []
-    for customer in utility.T:
-        levels = np.unique(np.append(0.0, customer))
-        for below, level in pairwise(levels):
-            columns.append(customer >= level)
-            weights_of.append(level - below)
-    if not columns:
-        raise InputError("utility", "must have an entry above 0 for a certificate", "zeros")
-    return np.stack(columns, axis=1), np.array(weights_of)

@@ -47,7 +47,7 @@ class CoverageTrace:
         f, params = problem.objective, or_default(None).coverage if params is None else params
         if not isinstance(f, BestElements):
             return None
-        covers, weights = _items(f.utility, f.weights, params.most_entries)
+        covers, weights = _items(f, params.most_entries)
         if not len(weights) or covers.size > params.most_entries:
             return None
         information = params.information * covers[..., None, None].astype(np.float64)
@@ -70,16 +70,14 @@ class CoverageTrace:
         )
 
 
-def _items(utility: FloatArray, weights: FloatArray, most: int) -> tuple[BoolArray, FloatArray]:
+def _items(f: BestElements, most: int) -> tuple[BoolArray, FloatArray]:
     """Items (n, M) that elements cover, and their weights (M,); equal items are one. Ends early beyond ``most``."""
     merged: dict[bytes, float] = {}
-    for own, weight in zip(utility.T, weights, strict=True):
-        levels = np.unique(own[own > 0])
-        for low, level in zip([0.0, *levels.tolist()], levels.tolist(), strict=False):
-            key = (own >= level).tobytes()
-            merged[key] = merged.get(key, 0.0) + float(weight) * (level - low)
-        if len(merged) * len(utility) > most:
+    for covering, weight in f.items():
+        key = covering.tobytes()
+        merged[key] = merged.get(key, 0.0) + weight
+        if len(merged) * f.n > most:
             break
     kept = {key: weight for key, weight in merged.items() if weight > 0}
-    covers = np.array([np.frombuffer(key, dtype=np.bool_) for key in kept]).reshape(len(kept), len(utility))
+    covers = np.array([np.frombuffer(key, dtype=np.bool_) for key in kept]).reshape(len(kept), f.n)
     return covers.T, np.array(list(kept.values()))

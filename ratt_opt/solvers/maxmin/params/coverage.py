@@ -17,7 +17,7 @@ class CoverageParams:
     ``share`` : of the seconds left, for the search of the trace; ``nodes`` : of it, if nothing is limited
     """
 
-    information: float = 1e6
+    information: float = 2.0**20
     most_entries: int = 200_000
     share: float = 0.8
     nodes: int = 1_000
