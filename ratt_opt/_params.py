@@ -14,7 +14,7 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["changed", "read_params"]
+__all__ = ["changed", "check_at_least_one", "read_params"]
 
 P = TypeVar("P", bound="DataclassInstance")
 
@@ -46,6 +46,19 @@ def changed(params: DataclassInstance) -> dict[str, Any]:
         elif value != usual:
             places[one.name] = value
     return places
+
+
+def check_at_least_one(params: DataclassInstance, places: tuple[str, ...]) -> None:
+    """Check the parameters at these places (``"annealing.longer"``), without which nothing would go on, or end.
+
+    Raises
+    ------
+    InputError : one is less than 1.
+    """
+    for place in places:
+        family, name = place.split(".")
+        if not (value := getattr(getattr(params, family), name)) >= 1:
+            raise InputError(f"params.{place}", "must be at least 1", value)
 
 
 def _with(default: P, document: dict[str, Any], place: str) -> P:

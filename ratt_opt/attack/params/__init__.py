@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ratt_opt._params import check_at_least_one
 from ratt_opt.attack.params.groups import (
     AllSetsParams,
     AnnealingParams,
@@ -42,6 +43,7 @@ from ratt_opt.attack.params.stages import (
     StageParams,
     ValueAnnealingParams,
 )
+from ratt_opt.errors import InputError
 from ratt_opt.graph.params import TreeParams
 
 __all__ = [
@@ -76,6 +78,13 @@ __all__ = [
     "UnderestimatorParams",
     "ValueAnnealingParams",
 ]
+
+AT_LEAST_ONE = (
+    "criterion.starts_for", "every_attack.batch", "all_sets.block", "annealing.longer", "annealing.again",
+    "bounds.largest_weight", "axis.intervals", "axis.bisections", "family_exchanges.stride",
+    "size_vectors.of_each_size", "size_vectors.some_vectors",
+)  # fmt: skip
+"""Parameters without which an attack would not go on, or not end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -113,6 +122,13 @@ class AttackParams:
     families: FamilyParams = field(default_factory=FamilyParams)
     family_bound: CoverParams = field(default_factory=CoverParams)
     possible_sizes: PossibleSizeParams = field(default_factory=PossibleSizeParams)
+
+    def __post_init__(self) -> None:
+        """Check what an attack could not go on without. ``InputError`` : it is less than 1."""
+        check_at_least_one(self, AT_LEAST_ONE)
+        for name in ("hot", "warm", "cold"):
+            if not (value := getattr(self.value_annealing, name)) > 0:
+                raise InputError(f"params.value_annealing.{name}", "must be positive", value)
 
 
 DEFAULT = AttackParams()

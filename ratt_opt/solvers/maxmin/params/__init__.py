@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ratt_opt._params import check_at_least_one
 from ratt_opt.errors import InputError
 from ratt_opt.solvers.maxmin.params.coverage import CoverageParams
 from ratt_opt.solvers.maxmin.params.depth import (
@@ -94,10 +95,7 @@ class MaxMinParams:
 
     def __post_init__(self) -> None:
         """Check what a search could not go on without. ``InputError`` : it is less than 1, or there is no level."""
-        for place in AT_LEAST_ONE:
-            family, name = place.split(".")
-            if not (value := getattr(getattr(self, family), name)) >= 1:
-                raise InputError(f"params.{place}", "must be at least 1", value)
+        check_at_least_one(self, AT_LEAST_ONE)
         if 0.0 not in self.levels.shares:
             raise InputError("params.levels.shares", "must hold 0, the level of the best plan", self.levels.shares)
 
