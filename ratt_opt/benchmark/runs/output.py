@@ -53,7 +53,7 @@ def read_output(instance: BenchmarkInstance, run: Run) -> Output:
             reports.append(_report(instance, line))
         except InputError as error:
             faults.append(f"line {number}: {error}")
-        except ValueError:
+        except (ValueError, RecursionError):
             cut_off = "output stops in the middle of a line" if run.torn and is_last else "is no JSON object"
             faults.append(f"line {number} {cut_off}" if "is no" in cut_off else f"{cut_off}, line {number}")
     if run.killed:
