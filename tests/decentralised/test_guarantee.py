@@ -8,7 +8,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt import Faults, decentralised_ratt, heard_sets_bound
-from tests.decentralised.teams import breaking_faults, connected_graph, radio_faults, team
+from tests.decentralised.teams import breaking_faults, connected_graph, parts, radio_faults, team
 
 
 @pytest.mark.parametrize(("k", "value"), [(0.3, 0.595), (0.5, 0.375), (0.8, 0.12)])
@@ -92,6 +92,33 @@ def test_choices_told_some_hops_far_keep_their_share():
 def test_choices_told_some_hops_far_keep_their_share_in_many_teams():
     for seed in range(100, 400):
         check_hops(seed)
+
+
+def check_broken_hops(seed):
+    rng = np.random.default_rng([11, seed])
+    problem = team(rng)
+    plan = decentralised_ratt(problem, hops=int(rng.integers(1, 4)), faults=breaking_faults(rng, problem), seed=seed)
+    assert plan.stop is ro.Stop.EXHAUSTED
+    assert not plan.disagreements
+    for group, own, alone in parts(problem, plan):
+        assert set(group) & set(plan.bait) == {group[k] for k in ro.ratt(alone).bait}
+        for k, i in enumerate(group):
+            assert set(plan.heard[i]) <= set(group)
+            heard = [plan.elements[j] for j in plan.heard[i]]
+            beside = np.sort(np.searchsorted(own, heard)).astype(int)
+            values = alone.objective.extensions(beside, alone.choices[k])
+            assert plan.elements[i] == own[alone.choices[k][np.argmax(values)]]
+
+
+def test_choices_told_some_hops_far_are_best_beside_those_heard_whatever_goes_wrong():
+    for seed in range(40):
+        check_broken_hops(seed)
+
+
+@pytest.mark.slow
+def test_choices_told_some_hops_far_are_best_beside_those_heard_in_many_teams():
+    for seed in range(100, 700):
+        check_broken_hops(seed)
 
 
 def test_all_hops_are_one_clique():

@@ -1,6 +1,7 @@
 """Messages come back as they were sent, have the sizes that they say, and robots that disagree say so by name."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -134,3 +135,5 @@ def test_robots_that_find_another_alpha_name_the_component():
 
 def test_every_state_has_a_sentence():
     assert all(state.value.endswith(".") and state.value.startswith("It ") for state in State)
+    guide = (Path(__file__).parents[2] / "docs/guides/decentralised.md").read_text(encoding="utf-8")
+    assert all(f"| {state.name.lower()} | It " in guide for state in State)
