@@ -11,6 +11,7 @@ import numpy as np
 from ratt_opt._validation import check_integer, check_number
 from ratt_opt.decentralised.messages import VERSION, Choice
 from ratt_opt.decentralised.view import digest
+from ratt_opt.errors import InputError
 from ratt_opt.problem import Problem
 from ratt_opt.setfunctions.information import from_triangles, triangles
 from ratt_opt.solvers.undominated import undominated
@@ -63,6 +64,10 @@ class Knowledge:
     ``links_worth`` : number of sensing attacks that the link attacks of a threat are worth.
     ``hops`` : links over which choices are told, ``None`` for all; ``exchanges`` : ``None`` for RATT's plan.
     ``budget`` : of the computer that searches for exchanges, if there is a limit.
+
+    Raises
+    ------
+    InputError : exchanges with limited hops.
     """
 
     robot: int
@@ -78,6 +83,10 @@ class Knowledge:
     exchanges: ExchangeParams | None = None
     version: int = VERSION
     budget: Budget | None = None
+
+    def __post_init__(self) -> None:
+        if None not in {self.hops, self.exchanges}:
+            raise InputError("hops", "must be None if robots exchange: all choices must be known", self.hops)
 
     @property
     def common(self) -> bytes:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.decentralised.processes import plan_in_processes
 
 
 def test_a_mission_planned_by_messages_is_ratt_s():
@@ -33,4 +34,6 @@ def test_planners_by_messages_have_options_and_refuse_what_cannot_be():
     planner = ro.DecentralisedPlanner(exchanges=exchanges)
     assert list(planner(problem)) == list(ro.decentralised_refined(problem, params=exchanges))
     with pytest.raises(ro.InputError, match="hops"):
-        ro.DecentralisedPlanner(exchanges=exchanges, hops=1)(problem)
+        ro.DecentralisedPlanner(exchanges=exchanges, hops=1)
+    with pytest.raises(ro.InputError, match="hops"):
+        plan_in_processes(problem, hops=1, exchanges=exchanges)

@@ -91,19 +91,26 @@ class RefinedPlanner:
 
 @dataclass(frozen=True, slots=True)
 class DecentralisedPlanner:
-    """The plan by messages between neighbours: RATT's, or with ``exchanges``, or with choices told ``hops`` far."""
+    """The plan by messages between neighbours: RATT's, or with ``exchanges``, or with choices told ``hops`` far.
+
+    Raises
+    ------
+    InputError : exchanges with limited hops.
+    """
 
     exchanges: ExchangeParams | None = None
     hops: int | None = None
     faults: Faults | None = None
     seed: int = 0
 
+    def __post_init__(self) -> None:
+        if None not in {self.hops, self.exchanges}:
+            raise InputError("hops", "must be None if robots exchange: all choices must be known", self.hops)
+
     def __call__(self, problem: Problem) -> DecentralisedPlan:
-        """Plan in a simulation of the radios. InputError : exchanges with limited hops."""
+        """Plan in a simulation of the radios."""
         if self.exchanges is None:
             return decentralised_ratt(problem, hops=self.hops, faults=self.faults, seed=self.seed)
-        if self.hops is not None:
-            raise InputError("hops", "must be None if robots exchange: all choices must be known", self.hops)
         return decentralised_refined(problem, params=self.exchanges, faults=self.faults, seed=self.seed)
 
 
