@@ -93,7 +93,9 @@ let objective = function
   | _ -> raise (Fault "the objective must be trace, logdet or maxeig")
 
 let problem value =
-  let has_output = match value with Record pairs -> List.mem_assoc "output" pairs | _ -> false in
+  let has name = match value with Record pairs -> List.mem_assoc name pairs | _ -> false in
+  if has "at_most" then format "problem" "has at_most (few robots may be busy), which this checker does not know";
+  let has_output = has "output" in
   let given =
     [ "objective"; "dimension"; "prior"; "information"; "weights"; "owners"; "links"; "alpha_s"; "alpha_c";
       "protected_robots"; "protected_links" ] in

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from dataclasses import replace
 
 import pytest
 
 import ratt_opt as ro
+from tests.formal.verified import ratt_check
 from tests.solvers.test_at_most import drawn
 
 
@@ -68,3 +70,11 @@ def test_each_corruption_is_named(change, fault, tmp_path):
     (tmp_path / "bad.json").write_text(json.dumps(document))
     with pytest.raises((ro.ProofError, ro.FileFormatError), match=fault):
         ro.verify_certificate(tmp_path / "bad.json")
+
+
+def test_the_formal_checker_refuses_the_limit_by_name(tmp_path):
+    checker, path = ratt_check(), tmp_path / "certificate.json"
+    certified(3, path)
+    done = subprocess.run([checker, str(path)], capture_output=True, text=True, check=False)
+    assert done.stdout.startswith("2 ")
+    assert "problem has at_most (few robots may be busy), which this checker does not know" in done.stdout
