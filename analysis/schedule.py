@@ -1,4 +1,4 @@
-"""The schedules of attacks as Markdown: ``python -m analysis.schedule criterion|function|sizes``."""
+"""The schedules of stages as Markdown: ``python -m analysis.schedule criterion|function|sizes|bounds``."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt.attack.params import AttackParams
 from ratt_opt.attack.size_vectors.size_stages import SIZE_STAGES
 from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
+from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,8 +25,23 @@ def _sentence(function: Any) -> str:
     return text.rstrip(".")
 
 
+def bounds() -> None:
+    """Print the table of the stages that lower the upper end of the best plan."""
+    print("| stage | what it does | applies when | kind |")
+    print("| --- | --- | --- | --- |")
+    for stage in BOUND_STAGES:
+        done = _sentence(type(stage)).removeprefix("Stage that ").capitalize()
+        when = _sentence(stage.applies)
+        if hasattr(stage, "fits"):
+            when += "; " + _sentence(stage.fits).removeprefix("Tell whether ")
+        print("| " + " | ".join([stage.name, done, when, stage.kind]) + " |")
+
+
 def main() -> None:
     """Print one table."""
+    if sys.argv[1] == "bounds":
+        bounds()
+        return
     print("| stage | what it does | applies when | share of what is left | nodes at most |")
     print("| --- | --- | --- | --- | --- |")
     for stage in TABLES[sys.argv[1]]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import networkx as nx
 import numpy as np
 
+from ratt_opt.report.layout import robot_places
 from ratt_opt.report.map import label_places
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
 from ratt_opt.running.interrupts import imported_whole
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ratt_opt._validation import FloatArray
     from ratt_opt.decentralised.links import LinkLosses
     from ratt_opt.decentralised.plan import DecentralisedPlan
     from ratt_opt.graph.communication import Link
@@ -60,9 +59,7 @@ def heard_figure(
 def _draw_network(
     axes: Axes, problem: Problem, plan: DecentralisedPlan, known: Description, drawn: tuple[dict[Link, float], str]
 ) -> None:
-    after = known.poses_after
-    is_layout = after is None
-    places = _layout(problem) if after is None else after[plan.elements][:, :2]
+    places = robot_places(problem, plan.elements, known)
     home = {i: group for group in plan.components for i in group}
     lost = {tuple(sorted(who)) for _, kind, who in plan.faults_met if kind == "cut"}
     links = sorted(problem.communication.links)
@@ -88,14 +85,7 @@ def _draw_network(
             axes.scatter(x, y, c=colour, marker=marker, s=46, zorder=3, label=label)
     for i, place in enumerate(places):
         axes.annotate(str(i), place, xytext=(5, 5), textcoords="offset points", fontsize=8)
-    label_places(axes, is_layout=is_layout)
-
-
-def _layout(problem: Problem) -> FloatArray:
-    graph = nx.Graph(sorted(problem.communication.links))
-    graph.add_nodes_from(range(problem.n_robots))
-    placed = nx.spring_layout(graph, seed=0)
-    return np.array([placed[i] for i in range(problem.n_robots)])
+    label_places(axes, is_layout=known.poses_after is None and known.poses is None)
 
 
 def _draw_table(axes: Axes, problem: Problem, plan: DecentralisedPlan) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.report.description import FieldOfView, describe, named
+from ratt_opt.report.layout import robot_places
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -78,7 +79,7 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
     """Put together what :func:`draw_map` draws; ``view``: one of the report's views, by default the worst."""
     plan = report.recommended if view is None else view
     problem, known = report.problem, describe(report.problem, source)
-    places = _places(report, plan, known)
+    places = robot_places(report.problem, plan.elements, known)
     after = None if known.poses_after is None else known.poses_after[plan.elements]
     plane = None if known.targets is None or plan.posterior is None else _plane(source, plan.posterior.shape[-1])
     return Picture(
@@ -121,18 +122,3 @@ def _views(known: Description) -> tuple[FieldOfView, ...] | None:
 def _watched(problem: Problem, plan: AssessedPlan) -> BoolArray | None:
     told = np.asarray(problem.information_objective.information[plan.elements].any(axis=(2, 3)))
     return None if told.all() else told
-
-
-def _places(report: Findings, plan: AssessedPlan, known: Description) -> FloatArray:
-    """(N, 2) where to draw the robots: after their controls, now, or by a layout of the graph."""
-    if known.poses_after is not None:
-        return known.poses_after[plan.elements][:, :2]
-    if known.poses is not None:
-        return known.poses[:, :2]
-    import networkx as nx
-
-    graph = nx.Graph(report.problem.communication.links)
-    graph.add_nodes_from(range(report.problem.n_robots))
-    every = report.problem.n_robots * (report.problem.n_robots - 1) // 2
-    laid = nx.circular_layout(graph) if graph.number_of_edges() == every else nx.spring_layout(graph, seed=0)
-    return np.array([laid[i] for i in range(report.problem.n_robots)], dtype=np.float64)
