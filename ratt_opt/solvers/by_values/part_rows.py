@@ -14,7 +14,7 @@ elements that are equal. If no two robots choose a column, the robot of any colu
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from ratt_opt.bounds.cuts import ROUNDING
 from ratt_opt.setfunctions.best_elements import BestElements
 from ratt_opt.solvers.by_values.columns import Columns
 from ratt_opt.solvers.by_values.outcome_rows import OutcomeRows, blinds_alone
+from ratt_opt.solvers.by_values.part_row import SUM, PartRow, combine, down_to_multiple
 from ratt_opt.solvers.by_values.plan_tree import Pooled
-from ratt_opt.solvers.by_values.whole_function import WholeFunction
 from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.relaxation import NodeProgram
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
@@ -34,13 +34,12 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
-    from ratt_opt.setfunctions.base import SetFunction
     from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
     from ratt_opt.solvers.by_values.columns import Node
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
 
-__all__ = ["PartRowParams", "PartRows", "down_to_multiple", "parts_of"]
+__all__ = ["PartRowParams", "PartRows"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,29 +57,6 @@ class PartRowParams:
     tolerance: float = 1e-9
     deep: float = 0.1
     patience: int = 8
-
-
-def down_to_multiple(bound: float, spacing: float) -> float:
-    """The largest value that is at most a bound, if all are multiples of a spacing that is not 0."""
-    if spacing <= 0 or not np.isfinite(bound):
-        return bound
-    return spacing * float(np.floor(bound / spacing * (1 + ROUNDING)))
-
-
-def parts_of(f: SetFunction, asked: SetFunction) -> Decomposition | None:
-    """The parts of ``f``; all of it as one part if it is submodular, valued as ``asked``; ``None`` otherwise."""
-    parts = f.decomposition()
-    if parts is not None and parts.is_sum:
-        return parts
-    return WholeFunction(asked) if f.is_submodular else None
-
-
-class _Row(NamedTuple):
-    """``value <= constant + sum of scores``, if at most one robot chooses each of the columns ``wiped``."""
-
-    constant: float
-    scores: FloatArray
-    wiped: tuple[int, ...]
 
 
 class PartRows:
@@ -106,8 +82,10 @@ class PartRows:
         self.columns = columns = Columns(problem, parts, merges=merges)
         self._touching = [parts.touching(j) for j in range(parts.n_parts)]
         self._pool = InequalityPool(problem.robot, parts.n_parts, self._first_bounds(budget), RowParams())
-        self._program = NodeProgram(len(columns.kinds), columns.of_kind, columns.limit, columns.sizes)
-        self._rows: dict[int, _Row] = {}
+        self._levels = parts.n_parts if columns.merges else 0
+        sizes = columns.sizes
+        self._program = NodeProgram(len(columns.kinds), columns.of_kind, columns.limit, sizes, self._levels)
+        self._rows: dict[int, PartRow] = {}
         self._made = 0
         self._outcomes = OutcomeRows(attacks, columns, None if only_blinds else Pooled(problem, single))
         self._mean = np.zeros(len(columns.kinds))
@@ -123,9 +101,32 @@ class PartRows:
         self._program.drop_idle(self._params.patience)
         self._program.drop(lambda k: bool((node.upper[list(self._rows[k].wiped)] > 1).any()))
         self._rows = {k: self._rows[k] for k in self._program.in_use}
-        self._program.within(node.lower, node.upper)
-        if not self._program.in_use:
+        free = np.zeros(self._levels)
+        self._program.within(np.append(node.lower, free), np.append(node.upper, free + np.inf))
+        if self._levels:
+            self._bound_levels()
+        elif not self._program.in_use:
             self.separate(node, self.columns.middle_of(node), np.inf, budget)
+
+    def _bound_levels(self) -> None:
+        """Give each part a row for its value under the mean outcome, and the values one that adds them up."""
+        known = {row.part for row in self._rows.values()}
+        inside = self._outcomes.left[0][self._problem.robot]
+        for j, (constant, scores) in enumerate(self._pool.lasting()):
+            if j not in known:
+                self._use(PartRow(constant, scores * inside, part=j))
+        if SUM not in known:
+            self._use(PartRow(0.0, np.zeros(self._problem.objective.n), part=SUM))
+
+    def _use(self, row: PartRow) -> None:
+        """Add one row to the program."""
+        levels, n = np.zeros(self._levels), len(self.columns.kinds)
+        if row.part == SUM:
+            levels[:] = 1.0
+        scores = np.append(self.columns.mean(row.scores), levels)
+        self._program.use(self._made, row.constant, scores, n + row.part if row.part >= 0 else None)
+        self._rows[self._made] = row
+        self._made += 1
 
     def solve(self, budget: Budget) -> RelaxedPlan | None:
         """The fractional plan (columns,) of the node, or ``None`` if HiGHS claims none."""
@@ -134,14 +135,11 @@ class PartRows:
     def largest(self, relaxed: RelaxedPlan, node: Node) -> float:
         """The largest value of the rows combined by the multipliers, over the plans of a node."""
         active = np.flatnonzero(relaxed.duals > 0)
-        if not len(active):
+        combined = combine([self._rows[k] for k in relaxed.cuts[active].tolist()], relaxed.duals[active], self._levels)
+        if combined is None:
             return np.inf
-        rows = relaxed.cuts[active].tolist()
-        weights = relaxed.duals[active] / relaxed.duals[active].sum()
-        constants = np.array([self._rows[k].constant for k in rows])
-        combined = weights @ np.array([self._rows[k].scores for k in rows])
-        constant, gains = float(weights @ constants), self.columns.largest(combined, node)
-        bound = constant + gains + ROUNDING * (float(np.abs(weights * constants).sum()) + abs(gains))
+        gains = self.columns.largest(combined.scores, node)
+        bound = combined.constant + gains + ROUNDING * (combined.size + abs(gains))
         return down_to_multiple(bound, self._spacing)
 
     def separate(self, node: Node, point: FloatArray, level: float, budget: Budget) -> bool:
@@ -150,11 +148,17 @@ class PartRows:
         Rows are taken between the plan and a mean of earlier ones first, which needs fewer rounds.
         """
         params, fresh = RowParams(), self._params.fresh
+        point, values = point[: len(self.columns.kinds)], point[len(self.columns.kinds) :]
         self._mean = self.columns.within(self._mean, node, point)
         self._mean = (1 - params.newest) * self._mean + params.newest * point
         between = (1 - params.inward) * point + params.inward * self._mean
         goal = level - self._params.tolerance * abs(level) if level < np.inf else level
         deep = goal - self._params.deep * max(goal - self._attacks.lower, 0.0) if level < np.inf else level
+        if self._levels:
+            added = [self._bound_parts(at, point, values, budget) for at in (between, point)]
+            if any(added):
+                self._add_rows(node, (between, point), goal, 0, budget)
+                return True
         if self._add_rows(node, (between, point), deep, 0, budget):
             return True
         if self._add_rows(node, (between, point), goal, fresh, budget):
@@ -169,21 +173,33 @@ class PartRows:
         """Add the lowest rows at the first plan that are below a goal at the second one; whether there are any."""
         at, point = plans
         share = self.columns.share(at)
-        worth = self._pool.target_bounds(self._outcomes.left, self._pool.by_robot(share)).sum(axis=1)
-        lowest = np.argsort(worth, kind="stable")[: self._params.rows]
-        left: list[tuple[FloatArray, tuple[int, ...]]] = [
-            (np.asarray(self._outcomes.left[k][self._problem.robot]), ()) for k in lowest.tolist()
-        ]
-        left += self._wiped(share, node, goal)
-        for inside, _ in left[:fresh] + left[len(lowest) :][:fresh]:
+        left = self._wiped(share, node, goal) if self._levels else self._lowest(share)
+        for inside, _ in left[:fresh]:
             self._add_bounds(inside, share, budget)
         whole, added = self.columns.share(point), False
         for inside, wiped in left:
             constant, scores = self._pool.combined(inside, share)
             if constant + float(scores @ whole) < goal:
-                self._program.use(self._made, constant, self.columns.mean(scores))
-                self._rows[self._made] = _Row(constant, scores, wiped)
-                self._made += 1
+                self._use(PartRow(constant, scores, wiped))
+                added = True
+        return added
+
+    def _lowest(self, share: FloatArray) -> list[tuple[FloatArray, tuple[int, ...]]]:
+        """(E,) what the outcomes leave whose rows are lowest at a fractional plan."""
+        worth = self._pool.target_bounds(self._outcomes.left, self._pool.by_robot(share)).sum(axis=1)
+        lowest = np.argsort(worth, kind="stable")[: self._params.rows].tolist()
+        return [(np.asarray(self._outcomes.left[k][self._problem.robot]), ()) for k in lowest]
+
+    def _bound_parts(self, at: FloatArray, point: FloatArray, values: FloatArray, budget: Budget) -> bool:
+        """Add bounds of parts at one plan that are below the program's values at another; whether there are any."""
+        inside = self._outcomes.left[0][self._problem.robot]
+        share, whole, added = self.columns.share(at) * inside, self.columns.share(point) * inside, False
+        for j, touching in enumerate(self._touching):
+            budget.check()
+            bound, weight = self._parts.overestimator(j, share[touching]), self._parts.weights[j]
+            if weight * bound.at(whole[touching]) < values[j] - self._params.tolerance * abs(values[j]):
+                one = self._inequalities([(j, bound)])
+                self._use(PartRow(float(one.constants[0]), one.scores[:, 0] * inside, part=j))
                 added = True
         return added
 
@@ -192,7 +208,7 @@ class PartRows:
 
         For columns that at most one robot chooses: no more than the budget then are to blind, one for each.
         """
-        most = self._problem.threat.n_blinded if self.columns.merges else 0
+        most = self._problem.threat.n_blinded
         single = np.flatnonzero((node.upper == 1) & (self.columns.mean(share) > 0))
         if not most or not len(single):
             return []

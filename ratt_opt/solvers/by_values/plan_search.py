@@ -13,12 +13,13 @@ from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.setfunctions.base import checked_values
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.solvers.by_values.climbing import Climbing
-from ratt_opt.solvers.by_values.part_rows import down_to_multiple, parts_of
+from ratt_opt.solvers.by_values.part_row import down_to_multiple
 from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE, PlanAttacks
 from ratt_opt.solvers.by_values.plan_bounds import guarantee_bound, pooling_bound
 from ratt_opt.solvers.by_values.plan_tree import PlanTree
 from ratt_opt.solvers.by_values.reliance import refuse_along, relied_on
 from ratt_opt.solvers.by_values.row_tree import RowTree
+from ratt_opt.solvers.by_values.whole_function import parts_of
 from ratt_opt.solvers.ratt import alpha_cs_in_share, bait_and_greedy
 from ratt_opt.solvers.result import MaxMinResult
 

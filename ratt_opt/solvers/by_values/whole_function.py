@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["WholeFunction"]
+__all__ = ["WholeFunction", "parts_of"]
 
 
 class WholeFunction(Decomposition):
@@ -63,3 +63,11 @@ class WholeFunction(Decomposition):
         refuse_larger_gains(unmetered(self._f), base, others, added, self._alone[others])
         gains[others] = rounded_up(added)
         return Overestimator(value, gains)
+
+
+def parts_of(f: SetFunction, asked: SetFunction) -> Decomposition | None:
+    """The parts of ``f``; all of it as one part if it is submodular, valued as ``asked``; ``None`` otherwise."""
+    parts = f.decomposition()
+    if parts is not None and parts.is_sum:
+        return parts
+    return WholeFunction(asked) if f.is_submodular else None

@@ -58,6 +58,7 @@ class NodeProgram:
     solve starts from the last basis. Only the multipliers are used; every bound is derived from them anew.
 
     ``choices`` : columns of each robot, or of each class of robots, of ``sizes`` robots each
+    ``levels`` : further columns, at least 0, which rows may bound in the place of ``t``
     """
 
     def __init__(
@@ -66,10 +67,12 @@ class NodeProgram:
         choices: Choices,
         limit: ChoiceLimit | None = None,
         sizes: FloatArray | None = None,
+        levels: int = 0,
     ) -> None:
-        self._n, self._first_cut = n_elements, len(choices) + (limit is not None)
+        self._n, self._first_cut = n_elements + levels, len(choices) + (limit is not None)
         sizes = np.ones(len(choices)) if sizes is None else sizes
-        zeros, most = np.zeros(n_elements), np.full(n_elements, float(sizes.max()))
+        zeros = np.zeros(n_elements + levels)
+        most = np.append(np.full(n_elements, float(sizes.max())), np.full(levels, np.inf))
         owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], sizes, sizes)
         cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(most, np.inf)
         self._most = most
@@ -77,27 +80,27 @@ class NodeProgram:
         if limit is not None:
             busy = np.setdiff1d(np.concatenate(choices), limit.idle).tolist()
             self._program.add_rows(rows_of([(busy, [1.0] * len(busy))], -np.inf, float(limit.most)))
-        self._allowed = np.ones(n_elements, dtype=np.bool_)
+        self._allowed = np.ones(self._n, dtype=np.bool_)
         self.in_use: list[int] = []
         """Cuts that are rows now, in row order."""
         self._idle: dict[int, int] = {}
-        self._fresh: list[tuple[float, FloatArray]] = []
-        """Constants and scores of the last cuts in use, whose rows are added together before the next solve."""
+        self._fresh: list[tuple[float, FloatArray, int]] = []
+        """Constants, scores and bounded columns of the last cuts in use, whose rows are added before the next solve."""
 
-    def use(self, cut: int, constant: float, scores: FloatArray) -> None:
-        """Add one cut as a row."""
-        self._fresh.append((constant, scores))
+    def use(self, cut: int, constant: float, scores: FloatArray, level: int | None = None) -> None:
+        """Add one cut as a row; ``level`` : the column that it bounds in the place of ``t``."""
+        self._fresh.append((constant, scores, self._n if level is None else level))
         self.in_use.append(cut)
         self._idle[cut] = 0
 
     def _add_fresh(self) -> None:
         if not self._fresh:
             return
-        columns = [np.append(np.flatnonzero(scores), self._n) for _, scores in self._fresh]
-        values = [np.append(-scores[own[:-1]], 1.0) for own, (_, scores) in zip(columns, self._fresh, strict=True)]
+        columns = [np.append(np.flatnonzero(scores), level) for _, scores, level in self._fresh]
+        values = [np.append(-scores[own[:-1]], 1.0) for own, (_, scores, _) in zip(columns, self._fresh, strict=True)]
         rows = Rows(
             lower=np.full(len(columns), -np.inf),
-            upper=np.array([constant for constant, _ in self._fresh]),
+            upper=np.array([constant for constant, _, _ in self._fresh]),
             starts=np.cumsum([0, *map(len, columns)]),
             columns=np.concatenate(columns),
             values=np.concatenate(values),

@@ -124,6 +124,13 @@ class InequalityPool:
         constant = _rounded_up(constants, scores, len(group))
         return Row(group, constant, scores, tuple(self._origins[k] for k in lowest.tolist()))
 
+    def lasting(self) -> list[tuple[float, FloatArray]]:
+        """Constant and scores (E,) of one inequality of each target."""
+        return [
+            (float(self._constants[k]), self._scores[k])
+            for k in (int(np.flatnonzero(self._targets == j)[0]) for j in range(self._n_targets))
+        ]
+
     def combined(self, inside: FloatArray, selection: FloatArray) -> tuple[float, FloatArray]:
         """Constant and scores (E,) of the lowest row at a relaxed choice (E,), of elements left in part (E,)."""
         lowest = self._lowest(selection * inside)
