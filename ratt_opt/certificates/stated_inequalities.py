@@ -129,7 +129,7 @@ class StatedInequalities:
             for lemma, tree in zip(lemmas, trees, strict=True):
                 elements = np.flatnonzero(lemma.scores).tolist()
                 scores = {e: fmpq(*float(lemma.scores[e]).as_integer_ratio()) for e in elements}
-                claim = checked.TargetLemma(lemma.target, scores, fmpq(0))
+                claim = checked.StatedLemma(lemma.target, scores, fmpq(0))
                 options = checked.options_of(about, claim, seers_of(about, lemma.target))
                 least = checked.least_constant(tangents, marginals, claim, tree, options)
                 constant = round_up(least if isinstance(least, fmpq) else least + SLACK)

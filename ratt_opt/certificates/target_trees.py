@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
     from ratt_opt.solvers.maxmin.proof import TargetLemma
 
-__all__ = ["TargetTree", "TreeParams", "target_trees"]
+__all__ = ["TargetTree", "TargetTreeParams", "target_trees"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TreeParams:
+class TargetTreeParams:
     """Limits of the trees: what they leave open raises a lemma's constant, and so the end that is proved.
 
     ``tolerance`` : of a target's largest value, by which a leaf may be above the constant: shorter trees against
@@ -72,7 +72,7 @@ class TargetTree:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Case:
+class _OpenCase:
     """An open case of a tree: what robots may have, ``allowed`` (R, C), and how its sets are bounded."""
 
     node: TargetTree
@@ -81,11 +81,13 @@ class _Case:
     bound: float
 
 
-def target_trees(problem: Problem, lemmas: Sequence[TargetLemma], params: TreeParams | None = None) -> list[TargetTree]:
+def target_trees(
+    problem: Problem, lemmas: Sequence[TargetLemma], params: TargetTreeParams | None = None
+) -> list[TargetTree]:
     """Return a tree for each lemma; where its constant is too low, or limits are met, it proves a larger one only."""
     if not lemmas:
         return []
-    params = params or TreeParams()
+    params = params or TargetTreeParams()
     if not problem.information_objective.is_submodular:
         return _TargetTrees(problem, lemmas, params).grown()[0]
     trees, closed = _TargetTrees(problem, lemmas, replace(params, nodes=min(params.plain, params.nodes))).grown()
@@ -105,7 +107,7 @@ class _TargetTrees:
     """
 
     def __init__(
-        self, problem: Problem, lemmas: Sequence[TargetLemma], params: TreeParams, *, has_bases: bool = False
+        self, problem: Problem, lemmas: Sequence[TargetLemma], params: TargetTreeParams, *, has_bases: bool = False
     ) -> None:
         self.params, self.has_bases, objective = params, has_bases, problem.information_objective
         self.objective, self.targets = objective, np.array([lemma.target for lemma in lemmas])
@@ -140,7 +142,7 @@ class _TargetTrees:
         Cases of largest bounds are divided until none is too large, or limits are met.
         """
         trees = [TargetTree() for _ in self.targets]
-        waiting: list[list[_Case]] = [[] for _ in trees]
+        waiting: list[list[_OpenCase]] = [[] for _ in trees]
         self._open(waiting, [(k, tree, self.elements[k] >= -1) for k, tree in enumerate(trees)])
         if self.has_bases:
             for k, tree in enumerate(trees):
@@ -163,7 +165,7 @@ class _TargetTrees:
             self._open(waiting, below)
         return trees, [not own for own in waiting]
 
-    def _open(self, waiting: list[list[_Case]], fresh: list[tuple[int, TargetTree, BoolArray]]) -> None:
+    def _open(self, waiting: list[list[_OpenCase]], fresh: list[tuple[int, TargetTree, BoolArray]]) -> None:
         """Bound new cases, each a leaf for now; keep those that may be divided and are not low enough."""
         for start in range(0, len(fresh), self.params.at_once):
             some = fresh[start : start + self.params.at_once]
@@ -175,9 +177,9 @@ class _TargetTrees:
             for number, (k, node, own) in enumerate(some):
                 node.point, node.base = points[number], self._decided(k, own) if by_base[number] else None
                 if divisible[number]:
-                    waiting[k].append(_Case(node, own, shares[number], float(bounds[number])))
+                    waiting[k].append(_OpenCase(node, own, shares[number], float(bounds[number])))
 
-    def _divide(self, lemma: int, case: _Case) -> Iterator[tuple[TargetTree, BoolArray]]:
+    def _divide(self, lemma: int, case: _OpenCase) -> Iterator[tuple[TargetTree, BoolArray]]:
         """Divide a case by one robot's options; yield the nodes below and what they allow, nothing last."""
         node, own = case.node, case.allowed
         row = _divided_row(own, case.share)

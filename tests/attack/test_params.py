@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.params import AT_LEAST_ONE, AttackParams
+from ratt_opt import AttackParams
+from ratt_opt.attack.params import AT_LEAST_ONE
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES
 from tests.watchdog import ends_within

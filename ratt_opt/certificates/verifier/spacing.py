@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from ratt_opt.certificates.verifier.statement import Statement
-    from ratt_opt.certificates.verifier.target_lemmas import TargetLemma
+    from ratt_opt.certificates.verifier.target_lemmas import StatedLemma
 
 __all__ = ["Spacing"]
 
@@ -31,7 +31,7 @@ __all__ = ["Spacing"]
 class Spacing:
     """Checked spacing; plans worth less than ``next_value`` are worth at most ``value``."""
 
-    def __init__(self, about: Statement, given: object, lemmas: list[TargetLemma]) -> None:
+    def __init__(self, about: Statement, given: object, lemmas: list[StatedLemma]) -> None:
         need(about.objective != "maxeig", "upper proof: values are spaced for sums over targets alone")
         number, named = fields("spacing", given, "count lemmas")
         count = index("spacing count", number, len(about.prior) + 1)

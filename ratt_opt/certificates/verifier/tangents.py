@@ -18,7 +18,7 @@ from ratt_opt.certificates.verifier.work import afford, hold, tick
 if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.statement import Statement
 
-__all__ = ["Bound", "Tangent", "read_points", "read_tangents", "seers_of"]
+__all__ = ["Bound", "StatedTangent", "read_points", "read_tangents", "seers_of"]
 
 BLOCK = 16
 """Points whose scores are computed between two looks at the clock."""
@@ -38,7 +38,7 @@ class Seers(NamedTuple):
     matrices: fmpq_mat
 
 
-class Tangent(NamedTuple):
+class StatedTangent(NamedTuple):
     """``phi_j(S) <= constant + sum of <weight, information[e]> over e in S`` for one target ``j``.
 
     The value of one target is its term of the trace or of the log-det. For the max-eigenvalue it is what that would be
@@ -80,11 +80,11 @@ def read_points(about: Statement, points: object) -> list[Bound]:
     return [Bound(own, constant) for own, (_, constant) in zip(scores, fenchel, strict=True)]
 
 
-def read_tangents(about: Statement, tangents: object) -> list[Tangent]:
+def read_tangents(about: Statement, tangents: object) -> list[StatedTangent]:
     """Return the tangents of single targets: ``[target, Y]``, or ``[target, t, v]`` as points of the max-eigenvalue."""
     given = array("tangents", tangents)
     reading.check_size("tangents", len(given) * about.d**2, reading.MOST_CELLS)
-    found, seers = list[Tangent](), cache(partial(_seers, about))
+    found, seers = list[StatedTangent](), cache(partial(_seers, about))
     for stated in given:
         tick()
         j, *touch = array("tangent", stated, 3 if about.objective == "maxeig" else 2)
@@ -92,7 +92,7 @@ def read_tangents(about: Statement, tangents: object) -> list[Tangent]:
         weight, constant = _of_target(about, j, touch if about.objective == "maxeig" else touch[0])
         for x in (*weight.entries(), *([constant] if isinstance(constant, fmpq) else [])):
             hold(x)
-        found.append(Tangent(j, fmpq_mat(about.d**2, 1, weight.entries()), constant, seers(j)))
+        found.append(StatedTangent(j, fmpq_mat(about.d**2, 1, weight.entries()), constant, seers(j)))
     return found
 
 

@@ -17,7 +17,7 @@ from ratt_opt.certificates.verifier.exact_matrices import largest
 from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.reading import array, check_size, exact, fields, index, indices, need, walk
 from ratt_opt.certificates.verifier.statement import LARGEST_TEAM
-from ratt_opt.certificates.verifier.tangents import Bound, Tangent, read_tangents, seers_of
+from ratt_opt.certificates.verifier.tangents import Bound, StatedTangent, read_tangents, seers_of
 from ratt_opt.certificates.verifier.work import hold, tick
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     Options = dict[int, tuple[int | None, ...]]
 
-__all__ = ["TargetInequalities", "TargetLemma", "least_constant", "options_of"]
+__all__ = ["StatedLemma", "TargetInequalities", "least_constant", "options_of"]
 
 ZERO = fmpq(0)
 MOST_TERMS = 20_000_000
@@ -36,7 +36,7 @@ MOST_SCORES = 4_000_000
 """Scores of rows and of the tangents that they name, in memory at once: half a gigabyte."""
 
 
-class TargetLemma(NamedTuple):
+class StatedLemma(NamedTuple):
     """Checked lemma; ``scores`` of elements that are not 0."""
 
     target: int
@@ -79,9 +79,9 @@ class TargetInequalities:
             hold(score)
         return Bound(scores, constant)
 
-    def _scores_of(self, inequality: Tangent | TargetLemma) -> dict[int, fmpq]:
-        """Scores, kept once they were asked for: rows share their inequalities."""
-        if isinstance(inequality, TargetLemma):
+    def _scores_of(self, inequality: StatedTangent | StatedLemma) -> dict[int, fmpq]:
+        """Scores, computed once and kept: rows share their inequalities."""
+        if isinstance(inequality, StatedLemma):
             return inequality.scores
         if id(inequality) not in self._kept:
             found = self._kept[id(inequality)] = inequality.scores()
@@ -90,9 +90,9 @@ class TargetInequalities:
                 hold(score)
         return self._kept[id(inequality)]
 
-    def _named(self, where: str, numbers: object) -> dict[int, Tangent | TargetLemma]:
+    def _named(self, where: str, numbers: object) -> dict[int, StatedTangent | StatedLemma]:
         """Inequalities by number, tangents first, as a record by target."""
-        known, found = len(self.tangents), dict[int, Tangent | TargetLemma]()
+        known, found = len(self.tangents), dict[int, StatedTangent | StatedLemma]()
         for number in array(where, numbers):
             k = index(where, number, known + len(self.lemmas))
             inequality = self.tangents[k] if k < known else self.lemmas[k - known]
@@ -100,19 +100,19 @@ class TargetInequalities:
             found[inequality.target] = inequality
         return found
 
-    def _lemma(self, number: int, given: object) -> TargetLemma:
+    def _lemma(self, number: int, given: object) -> StatedLemma:
         about, n = self._about, len(self._about.owner)
         target, elements, scores, stated, tree = fields("lemma", given, "target elements scores constant tree")
         j, constant = index("lemma target", target, len(about.prior)), exact("lemma constant", stated)
         scored = indices("lemma elements", elements, n)
         values = [exact("lemma scores", x) for x in array("lemma scores", scores, len(scored))]
-        lemma = TargetLemma(j, dict(zip(scored, values, strict=True)), constant)
+        lemma = StatedLemma(j, dict(zip(scored, values, strict=True)), constant)
         least = least_constant(self.tangents, self.marginals, lemma, tree, options_of(about, lemma, self._seers(j)))
         need(least <= constant, f"upper proof: the tree of lemma {number} only proves {arb(least).str(17)}")
         return lemma
 
 
-def options_of(about: Statement, lemma: TargetLemma, seers: tuple[int, ...]) -> Options:
+def options_of(about: Statement, lemma: StatedLemma, seers: tuple[int, ...]) -> Options:
     """Options of a set for each robot: an element that sees the target or has a score, or nothing (``None``)."""
     options: Options = {}
     for e in sorted({*seers, *lemma.scores}):
@@ -121,7 +121,11 @@ def options_of(about: Statement, lemma: TargetLemma, seers: tuple[int, ...]) -> 
 
 
 def least_constant(
-    tangents: list[Tangent], marginals: Callable[[], MarginalBounds], lemma: TargetLemma, tree: object, options: Options
+    tangents: list[StatedTangent],
+    marginals: Callable[[], MarginalBounds],
+    lemma: StatedLemma,
+    tree: object,
+    options: Options,
 ) -> Any:
     """Return the largest bound of the tree's leaves on ``phi_j(T) - scores(T)``; together they hold for every set."""
     bounds: list[Any] = []

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.decomposition import Decomposition
 
-__all__ = ["Columns", "Node"]
+__all__ = ["PlanColumns", "PlanNode"]
 
 WHOLE = 1e-6
 """Distance from a whole number up to which a number of robots counts as whole."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Node:
+class PlanNode:
     """Plans of which at least ``lower`` and at most ``upper`` (columns,) robots choose elements of each column.
 
     ``is_first`` : nothing is decided but that robots choose different columns, at most; what follows inherits its rows
@@ -30,7 +30,7 @@ class Node:
     is_first: bool = False
 
 
-class Columns:
+class PlanColumns:
     """Elements that the linear program need not tell apart: equal ones of robots with equal choices.
 
     ``column`` : (E,) of each element; ``kind`` : (N,) class of each robot, and ``kinds`` : (columns,) theirs
@@ -79,15 +79,15 @@ class Columns:
         """(N,) the mean over all permutations of robots that the columns do not tell apart."""
         return np.asarray((np.bincount(self.kind, left) / self.sizes)[self.kind])
 
-    def root(self) -> Node:
+    def root(self) -> PlanNode:
         """All plans."""
-        return Node(np.zeros(len(self.kinds)), self.sizes[self.kinds], is_first=True)
+        return PlanNode(np.zeros(len(self.kinds)), self.sizes[self.kinds], is_first=True)
 
-    def middle_of(self, node: Node) -> FloatArray:
+    def middle_of(self, node: PlanNode) -> FloatArray:
         """(columns,) a fractional plan that has all elements of a node alike."""
         return self.within(np.zeros(len(self.kinds)), node, (node.upper > 0).astype(np.float64))
 
-    def within(self, point: FloatArray, node: Node, otherwise: FloatArray) -> FloatArray:
+    def within(self, point: FloatArray, node: PlanNode, otherwise: FloatArray) -> FloatArray:
         """(columns,) a fractional plan moved to those that a node allows, kind by kind; ``otherwise`` if none is near.
 
         A column may stay beyond its upper end.
@@ -99,7 +99,7 @@ class Columns:
         scaled = np.divide(moved * sizes, total, out=np.zeros_like(moved), where=total > 0)
         return np.asarray(np.where(total > 0, scaled, otherwise * sizes / np.maximum(other, WHOLE)))
 
-    def largest(self, gains: FloatArray, node: Node) -> float:
+    def largest(self, gains: FloatArray, node: PlanNode) -> float:
         """The largest sum of gains (E,), at least 0, over the plans of a node; minus infinity if there is none."""
         if self.limit is not None:
             plan = self.limit.best_plan(gains, [own[node.upper[own] > 0] for own in self.of_kind])
@@ -116,7 +116,7 @@ class Columns:
                     break
         return total
 
-    def children(self, node: Node, point: FloatArray, *, apart: bool = False) -> list[Node]:
+    def children(self, node: PlanNode, point: FloatArray, *, apart: bool = False) -> list[PlanNode]:
         """Divide a node at a fractional plan: into all elements of a robot, or by how many robots choose a column.
 
         None if it is one plan, up to exchanges of equal elements. ``apart`` : whether plans in which no two robots
@@ -135,27 +135,27 @@ class Columns:
         return self._by_number(node, point, np.concatenate([self.of_kind[k] for k in open_kinds]))
 
     @staticmethod
-    def _apart(node: Node, shared: IntArray) -> list[Node]:
+    def _apart(node: PlanNode, shared: IntArray) -> list[PlanNode]:
         upper = node.upper.copy()
         upper[shared] = 1.0
-        children = [Node(node.lower, upper, is_first=node.is_first)]
+        children = [PlanNode(node.lower, upper, is_first=node.is_first)]
         for column in shared.tolist():
             lower = node.lower.copy()
             lower[column] = 2.0
-            children.append(Node(lower, node.upper))
+            children.append(PlanNode(lower, node.upper))
         return children
 
-    def _is_open(self, node: Node, kind: int, own: IntArray) -> bool:
+    def _is_open(self, node: PlanNode, kind: int, own: IntArray) -> bool:
         return bool(node.lower[own].sum() < self.sizes[kind] and (node.upper[own] > node.lower[own]).sum() > 1)
 
     @staticmethod
-    def _only(node: Node, own: IntArray, column: int) -> Node:
+    def _only(node: PlanNode, own: IntArray, column: int) -> PlanNode:
         upper = node.upper.copy()
         upper[own] = 0.0
         upper[column] = node.upper[column]
-        return Node(node.lower, upper)
+        return PlanNode(node.lower, upper)
 
-    def _by_number(self, node: Node, point: FloatArray, own: IntArray) -> list[Node]:
+    def _by_number(self, node: PlanNode, point: FloatArray, own: IntArray) -> list[PlanNode]:
         """Divide by how many robots choose the column whose number is least whole, else largest."""
         free = own[node.upper[own] > node.lower[own]]
         number = np.clip(point[free], node.lower[free], node.upper[free])
@@ -167,10 +167,10 @@ class Columns:
         )
         fewer, more = node.upper.copy(), node.lower.copy()
         fewer[column], more[column] = most, most + 1
-        children = [Node(node.lower, fewer), Node(more, node.upper)]
+        children = [PlanNode(node.lower, fewer), PlanNode(more, node.upper)]
         return [child for child in children if self._has_plans(child)]
 
-    def _has_plans(self, node: Node) -> bool:
+    def _has_plans(self, node: PlanNode) -> bool:
         least, most = (np.bincount(self.kinds, side, len(self.sizes)) for side in (node.lower, node.upper))
         return bool((least <= self.sizes).all() and (most >= self.sizes).all())
 

@@ -8,7 +8,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.by_values.columns import Columns
+    from ratt_opt.solvers.by_values.columns import PlanColumns
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
     from ratt_opt.solvers.by_values.plan_tree import Pooled
 
@@ -27,7 +27,7 @@ class OutcomeRows:
     ``pooled`` : bounds what a group is worth under any plan; ``None`` if every attack leaves one group
     """
 
-    def __init__(self, known: PlanAttacks, columns: Columns, pooled: Pooled | None) -> None:
+    def __init__(self, known: PlanAttacks, columns: PlanColumns, pooled: Pooled | None) -> None:
         self._known, self._columns, self._pooled = known, columns, pooled
         self.left = np.zeros((0, len(columns.kind)))
         self.attacks: list[Attack] = []

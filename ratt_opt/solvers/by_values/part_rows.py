@@ -20,7 +20,7 @@ import numpy as np
 
 from ratt_opt.bounds.cuts import ROUNDING
 from ratt_opt.setfunctions.best_elements import BestElements
-from ratt_opt.solvers.by_values.columns import Columns
+from ratt_opt.solvers.by_values.columns import PlanColumns
 from ratt_opt.solvers.by_values.outcome_rows import OutcomeRows, blinds_alone
 from ratt_opt.solvers.by_values.part_row import SUM, PartRow, combine, down_to_multiple
 from ratt_opt.solvers.by_values.plan_tree import Pooled
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
-    from ratt_opt.solvers.by_values.columns import Node
+    from ratt_opt.solvers.by_values.columns import PlanNode
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
 
@@ -79,7 +79,7 @@ class PartRows:
         only_blinds = blinds_alone(problem)
         # Elements of equal utilities may be exchanged: what they are worth depends on nothing else.
         merges = only_blinds and not problem.threat.protected_robots and isinstance(problem.objective, BestElements)
-        self.columns = columns = Columns(problem, parts, merges=merges)
+        self.columns = columns = PlanColumns(problem, parts, merges=merges)
         self._touching = [parts.touching(j) for j in range(parts.n_parts)]
         self._pool = InequalityPool(problem.robot, parts.n_parts, self._first_bounds(budget), RowParams())
         self._levels = parts.n_parts if columns.merges else 0
@@ -95,7 +95,7 @@ class PartRows:
         """True if groups of some outcomes may be left out, as they are worth no more than the best plan."""
         return self._outcomes.leaves_out
 
-    def begin(self, node: Node, budget: Budget) -> None:
+    def begin(self, node: PlanNode, budget: Budget) -> None:
         """Leave out rows that do not hold at a node, and those that were of no use lately."""
         self._outcomes.take_over()
         self._program.drop_idle(self._params.patience)
@@ -132,7 +132,7 @@ class PartRows:
         """The fractional plan (columns,) of the node, or ``None`` if HiGHS claims none."""
         return self._program.solve(budget.seconds_left)
 
-    def largest(self, relaxed: RelaxedPlan, node: Node) -> float:
+    def largest(self, relaxed: RelaxedPlan, node: PlanNode) -> float:
         """The largest value of the rows combined by the multipliers, over the plans of a node."""
         active = np.flatnonzero(relaxed.duals > 0)
         combined = combine([self._rows[k] for k in relaxed.cuts[active].tolist()], relaxed.duals[active], self._levels)
@@ -142,7 +142,7 @@ class PartRows:
         bound = combined.constant + gains + ROUNDING * (combined.size + abs(gains))
         return down_to_multiple(bound, self._spacing)
 
-    def separate(self, node: Node, point: FloatArray, level: float, budget: Budget) -> bool:
+    def separate(self, node: PlanNode, point: FloatArray, level: float, budget: Budget) -> bool:
         """Add rows that cut a fractional plan (columns,) off, by bounds known or new ones; whether there are any.
 
         Rows are taken between the plan and a mean of earlier ones first, which needs fewer rounds.
@@ -168,7 +168,7 @@ class PartRows:
         return self._learn(point, goal, budget) and self._add_rows(node, (point, point), goal, fresh, budget)
 
     def _add_rows(
-        self, node: Node, plans: tuple[FloatArray, FloatArray], goal: float, fresh: int, budget: Budget
+        self, node: PlanNode, plans: tuple[FloatArray, FloatArray], goal: float, fresh: int, budget: Budget
     ) -> bool:
         """Add the lowest rows at the first plan that are below a goal at the second one; whether there are any."""
         at, point = plans
@@ -203,7 +203,7 @@ class PartRows:
                 added = True
         return added
 
-    def _wiped(self, share: FloatArray, node: Node, goal: float) -> list[tuple[FloatArray, tuple[int, ...]]]:
+    def _wiped(self, share: FloatArray, node: PlanNode, goal: float) -> list[tuple[FloatArray, tuple[int, ...]]]:
         """(E,) what is left if the robots of some columns are blinded, the lowest first, and these columns.
 
         For columns that at most one robot chooses: no more than the budget then are to blind, one for each.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.decomposition import Decomposition
-    from ratt_opt.solvers.by_values.columns import Node
+    from ratt_opt.solvers.by_values.columns import PlanNode
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
 
 __all__ = ["RowTree", "RowTreeParams"]
@@ -58,7 +58,7 @@ class RowTree:
         self._problem, self._attacks, self._params = problem, attacks, RowTreeParams()
         self._rows = PartRows(problem, parts, attacks, single, budget)
         self._columns = self._rows.columns
-        self._open: list[tuple[float, int, Node]] = [(-upper, 0, self._columns.root())]
+        self._open: list[tuple[float, int, PlanNode]] = [(-upper, 0, self._columns.root())]
         self._count, self._settled, self._hand = 0, -np.inf, -np.inf
         self._point = self._columns.middle_of(self._columns.root())
 
@@ -107,7 +107,7 @@ class RowTree:
                 heappush(self._open, (-self._hand, number if one is node else self._count, one))
             self._hand = -np.inf
 
-    def _lower_hand(self, node: Node, budget: Budget) -> None:
+    def _lower_hand(self, node: PlanNode, budget: Budget) -> None:
         """Lower the bound of the node in hand by rounds of rows."""
         params, stalls = self._params, 0
         allowed = params.at_root if node.is_first else params.elsewhere
@@ -126,7 +126,7 @@ class RowTree:
             is_stall = before - self._hand < params.stall * (self._hand - self._attacks.lower)
             stalls = stalls + 1 if is_stall else 0
 
-    def _divided(self, node: Node, best: float, budget: Budget) -> list[Node]:
+    def _divided(self, node: PlanNode, best: float, budget: Budget) -> list[PlanNode]:
         """The parts of a node; none if it is one plan, which is attacked."""
         children = self._columns.children(node, self._point, apart=self._problem.threat.n_blinded > 0)
         if children:

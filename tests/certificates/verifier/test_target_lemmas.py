@@ -14,7 +14,7 @@ from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, exhau
 from ratt_opt.certificates import stated_inequalities
 from ratt_opt.certificates.stated_inequalities import StatedInequalities
 from ratt_opt.certificates.stated_problem import statement_of
-from ratt_opt.certificates.target_trees import TreeParams, target_trees
+from ratt_opt.certificates.target_trees import TargetTreeParams, target_trees
 from ratt_opt.certificates.verifier import target_lemmas
 from ratt_opt.certificates.verifier.target_lemmas import TargetInequalities
 from tests.certificates import lemmas
@@ -73,7 +73,7 @@ def test_a_lemma_holds_for_every_set_and_its_constant_is_the_least(seed):
 @pytest.mark.parametrize("seed", range(12))
 def test_lemmas_by_base_sets_hold_for_every_set(seed, monkeypatch):
     """Gains beside bases, in the place of tangents, for log-dets."""
-    monkeypatch.setattr(stated_inequalities, "target_trees", partial(target_trees, params=TreeParams(plain=0)))
+    monkeypatch.setattr(stated_inequalities, "target_trees", partial(target_trees, params=TargetTreeParams(plain=0)))
     check_against_all_sets(*drawn(seed, "logdet"))
 
 
@@ -99,7 +99,7 @@ def test_one_base_shows_a_lemma_of_marginals():
 def test_trees_that_limits_cut_prove_larger_constants(seed):
     problem, rng = drawn(seed)
     wanted = [lemmas.drawn_lemma(problem, rng, j) for j in range(problem.objective.n_targets)]
-    for tree in target_trees(problem, wanted, TreeParams(nodes=0)):
+    for tree in target_trees(problem, wanted, TargetTreeParams(nodes=0)):
         assert tree.point is not None
     tangents, proved = stated(problem, wanted)
     whole = [claim["constant"] for claim in proved]
