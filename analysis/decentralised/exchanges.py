@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from analysis.decentralised.worth import with_cuts
+from analysis.decentralised.radio import with_cuts
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.decentralised.plan import decentralised_ratt, decentralised_refined
 from ratt_opt.scenario.limited_view import limited_view_scenario

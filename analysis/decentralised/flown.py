@@ -10,7 +10,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from analysis.decentralised.worth import LONG
+from analysis.decentralised.radio import LONG
 from ratt_opt.scenario.limited_view import limited_view_scenario
 from ratt_opt.studies.missions import mission_study
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ratt_opt.decentralised.faults import RadioParams
 from ratt_opt.decentralised.messages import HEADER, OFFER
+from ratt_opt.problem import Problem
 
-if TYPE_CHECKING:
-    from ratt_opt.problem import Problem
-
-__all__ = ["RADIO", "element_bytes", "neighbours", "sending"]
+__all__ = ["LONG", "RADIO", "element_bytes", "neighbours", "sending", "with_cuts"]
 
 RADIO = RadioParams()
+LONG = 45
+"""The longer range of radios [m]."""
 
 
 def sending(size: float) -> float:
@@ -30,3 +28,9 @@ def element_bytes(problem: Problem, elements: int = 1) -> int:
 def neighbours(problem: Problem) -> list[list[int]]:
     """Robots in reach of each robot, ascending."""
     return [list(problem.communication.neighbours_of(i)) for i in range(problem.n_robots)]
+
+
+def with_cuts(problem: Problem, alpha_c: int) -> Problem:
+    """The problem for an adversary who may cut links as well, as far as there are any."""
+    alpha_c = min(alpha_c, len(problem.communication.links))
+    return Problem(problem.objective, problem.robot, problem.graph, problem.alpha_s, alpha_c)

@@ -16,7 +16,7 @@ import numpy as np
 from analysis.decentralised.clique_selection import clique_selection
 from analysis.decentralised.costs import table
 from analysis.decentralised.neighbour_greedy import neighbour_greedy
-from analysis.decentralised.radio import RADIO, element_bytes, neighbours, sending
+from analysis.decentralised.radio import LONG, RADIO, element_bytes, neighbours, sending, with_cuts
 from ratt_opt._files import write_atomically
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.decentralised.faults import Faults
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 __all__ = ["STUDY", "figure_of", "problem_of", "write_page"]
 
 CAMERAS, MISSION, ALL_ROUND, COVERAGE = "cameras of 60°", "cameras on a mission", "cameras all round", "coverage"
-SIDE, SHORT, LONG = 60.0, 30, 45
+SIDE, SHORT = 60.0, 30
 """Side of the square [m], and ranges of a link [m]: mean degrees about 3.4 and 5.4 of eight robots."""
 KINDS = ((CAMERAS, SHORT), (CAMERAS, LONG), (MISSION, LONG), (ALL_ROUND, LONG), (COVERAGE, LONG))
 """Sensors or coverage, and the range of links [m]: a panel each."""
@@ -107,12 +107,6 @@ def _coverage(case: Case, reach: float, rng: np.random.Generator) -> Problem:
     graph.add_edges_from((i, j) for i in range(case.n_robots) for j in range(i) if apart[i, j] <= reach)
     f = TraceObjective(np.ones((ITEMS, 1, 1)), SHARP * seen[:, :, None, None])
     return Problem(f, np.repeat(np.arange(case.n_robots), choices), graph, case.alpha_s, 0)
-
-
-def with_cuts(problem: Problem, alpha_c: int) -> Problem:
-    """The problem for an adversary who may cut links as well, as far as there are any."""
-    alpha_c = min(alpha_c, len(problem.communication.links))
-    return Problem(problem.objective, problem.robot, problem.graph, problem.alpha_s, alpha_c)
 
 
 @dataclass(frozen=True, slots=True)
