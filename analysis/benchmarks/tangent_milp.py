@@ -123,7 +123,7 @@ class _Model:
                 question.unsubscribe(answer)
         values = np.array(self.highs.getSolution().col_value)
         chosen: FloatArray = values[1 : len(self.chosen) + 1]
-        bound = float(self.highs.getInfo().mip_dual_bound)
+        bound = float(self.highs.getInfo().mip_dual_bound) or np.inf  # 0 if it was ended before it had one
         if len(chosen) < len(self.chosen) or not chosen.any():
             return None, bound
         return np.array([choice[int(chosen[choice].argmax())] for choice in self.problem.choices]), bound

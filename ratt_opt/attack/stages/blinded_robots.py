@@ -23,7 +23,7 @@ class BlindedRobotsStage(Stage[AttackState]):
     name = "blinded robots"
 
     def applies(self, attack: AttackState) -> bool:
-        """Function says it is submodular, one group, no links to cut, more than 20,000 sets of robots; a limit."""
+        """Function says it is submodular and never falls, one group, no links to cut, over 20,000 sets; a limit."""
         return attack.is_limited and _is_one_submodular_group(attack)
 
     def run(self, attack: AttackState) -> Stop:
@@ -47,7 +47,8 @@ class FewBlindedRobotsStage(BlindedRobotsStage):
 def _is_one_submodular_group(attack: AttackState) -> bool:
     problem = attack.task.problem
     one_group = problem.threat.n_cut == 0 and len(problem.communication.groups()) == 1
-    if not (one_group and unmetered(problem.objective).is_submodular):
+    f = unmetered(problem.objective)
+    if not (one_group and f.is_submodular and f.is_non_decreasing):  # otherwise blinding fewer robots may be worse
         return False
     free = problem.n_robots - len(problem.threat.protected_robots)
     return comb(free, problem.threat.n_blinded) > attack.task.params.stages.blinded_sets
