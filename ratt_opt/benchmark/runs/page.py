@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._files import output_directory, write_atomically
+from ratt_opt._values import counted
 from ratt_opt.benchmark.runs.figures import CLOSE, gap_figure, profile_figure, steps_of
 from ratt_opt.benchmark.runs.measures import par10, time_to
 from ratt_opt.benchmark.runs.runner import read_rows
@@ -132,7 +133,7 @@ def _page(rows: Mapping[str, SolverRows], pictures: Mapping[str, str]) -> str:
     ]
     columns = ("instance", "class", "value", "known value", "proved", "claimed", "gap", "best at", "seconds")
     every = "".join(
-        f"<details><summary>{escape(solver)}: all {len(some)} rows</summary><div class=wide>"
+        f"<details><summary>{escape(solver)}: {counted(len(some), 'row')}</summary><div class=wide>"
         f"{_table(columns, [[_short(row[column]) for column in columns] for row in some])}</div></details>"
         for solver, some in rows.items()
     )
