@@ -357,18 +357,29 @@ let tangent pb value =
   | _ -> format "tangent" "must be a list of two entries, of three for maxeig"
 
 (* A lemma's tree: what a branch does not name is one part more, with the option of no element, numbered as the elements. *)
-let lemma owned size value =
+let lemma pb owned size stated extra value =
   match fields "lemma" [ "target"; "elements"; "scores"; "constant"; "tree" ] value with
   | [ target; elements; scores; constant; tree ] ->
       let elements = indices "lemma elements" elements and given = exacts "lemma scores" scores in
       if List.length elements <> List.length given then format "lemma scores" "must be as many as its elements";
       let dense = Array.make size { man = Big.zero; sc = Big.zero } in
       List.iter2 (fun e x -> if e >= size then format "lemma elements" "names no element" else dense.(e) <- x) elements given;
+      let target = nat "lemma target" target in
+      (* A base set at a leaf is one more tangent, behind those that the file states. *)
+      let base members =
+        if pb.objective <> LogDet then raise (Fault "upper proof: gains diminish with the log-det alone");
+        if List.exists (fun e -> e >= size) members then format "lemma leaf base" "names no element";
+        let number = stated + List.length !extra in
+        extra := (target, BaseTouch (List.map nat_of_int members)) :: !extra;
+        LemmaLeaf (nat_of_int number) in
       let rec node left next depth =
         if depth > deepest then format "lemma tree" "is too deep";
         match next () with
-        | Number _ as leaf -> LemmaLeaf (nat "lemma leaf" leaf)
-        | Record [ ("base", _) ] -> raise (Fault "upper proof: this checker reads no base sets in lemmas")
+        | Number _ as leaf ->
+            let k = index "lemma leaf" leaf in
+            if k >= stated then format "lemma leaf" "names no tangent";
+            LemmaLeaf (nat_of_int k)
+        | Record [ ("base", members) ] -> base (indices "lemma leaf base" members)
         | branch -> (
             match fields "lemma branch" [ "element"; "parts" ] branch with
             | [ robot; parts ] ->
@@ -379,7 +390,7 @@ let lemma owned size value =
                 let below block = let child = node (Robots.add i block left) next (depth + 1) in (List.map nat_of_int block, child) in
                 LemmaBranch (nat_of_int i, in_order below (if rest = [] then blocks else blocks @ [ rest ]))
             | _ -> assert false) in
-      { lemma_target = nat "lemma target" target; lemma_scores = Array.to_list dense; lemma_constant = exact "lemma constant" constant;
+      { lemma_target = target; lemma_scores = Array.to_list dense; lemma_constant = exact "lemma constant" constant;
         lemma_proof = consume "lemma" (array "lemma tree" tree) (fun next -> node (Robots.map (fun own -> own @ [ size ]) owned) next 0) }
   | _ -> assert false
 
@@ -387,7 +398,10 @@ let lemma owned size value =
 let rows pb size owned given =
   let field name = Option.value (List.assoc_opt name given) ~default:(List []) in
   let tangents = List.map (tangent pb) (array "tangents" (field "tangents")) in
-  let lemmas = List.map (lemma owned size) (array "lemmas" (field "lemmas")) in
+  let stated = List.length tangents and extra = ref [] in
+  let lemmas = in_order (lemma pb owned size stated extra) (array "lemmas" (field "lemmas")) in
+  let bases = List.rev !extra in
+  let moved k = nat_of_int (if k < stated then k else k + List.length bases) in
   let targets = Array.of_list (List.map (fun (j, _) -> int_of_nat j) tangents @ List.map (fun l -> int_of_nat l.lemma_target) lemmas) in
   let by_target where numbers =
     let add found k =
@@ -401,14 +415,14 @@ let rows pb size owned given =
     | [ a; g; numbers ] ->
         let named = by_target "row" numbers in
         let whole = if pb.objective = MaxEigenvalue then named else Robots.union (fun _ k _ -> Some k) named usual in
-        ((nat "row attack" a, nat "row group" g), List.map (fun (_, k) -> nat_of_int k) (Robots.bindings whole))
+        ((nat "row attack" a, nat "row group" g), List.map (fun (_, k) -> moved k) (Robots.bindings whole))
     | _ -> format "row" "must be a list of 3 entries" in
   let spacing value =
     if pb.objective <> Trace then raise (Fault "upper proof: this checker reads the spacing of values for the trace only");
     match fields "spacing" [ "count"; "lemmas" ] value with
     | [ count; numbers ] -> (nat "spacing count" count, List.map (nat "spacing lemmas") (array "spacing lemmas" numbers))
     | _ -> assert false in
-  { tangent_list = tangents; lemma_list = lemmas; row_list = List.map row (array "rows" (field "rows"));
+  { tangent_list = tangents @ bases; lemma_list = lemmas; row_list = List.map row (array "rows" (field "rows"));
     spacing = Option.map spacing (List.assoc_opt "spacing" given) }
 
 let cut value =

@@ -53,6 +53,7 @@ Print Assumptions check_cover_leafP.
 Print Assumptions check_lemmaP.
 Print Assumptions row_sumP.
 Print Assumptions rowP.
+Print Assumptions base_boundP.
 Print Assumptions spaced_value.
 Print Assumptions check_group_gainsP.
 Print Assumptions check_casesP.

@@ -25,8 +25,8 @@ Record claim := Claim { plan : seq nat; lower : dyadic; upper : dyadic }.
 (** Where a linear bound touches: one matrix per target (trace, log-det), or a target, a length and a direction. Matrices
     are symmetric, but with outputs: then they have a column for each row of the output, and are listed whole. *)
 Inductive point := TracePoint of seq (seq dyadic) | EigenPoint of nat & dyadic & seq dyadic.
-(** The same of one target. *)
-Inductive touch := MatrixTouch of seq dyadic | EigenTouch of dyadic & seq dyadic.
+(** The same of one target; for log-det also a base set, beside which gains diminish. *)
+Inductive touch := MatrixTouch of seq dyadic | EigenTouch of dyadic & seq dyadic | BaseTouch of seq nat.
 (** Version 1: a size tree, an attack tree. Version 2: the sets alone, dual prices, a cover, sizes of groups. *)
 Inductive lower_proof :=
 | ForcedSize of nat & size_tree
@@ -227,9 +227,26 @@ Definition gradient (pt : point) : option (seq dmat * dyadic) :=
   end.
 Definition target_scores (j : nat) (g : dmat * dyadic) : target_bound :=
   (j, ([seq mdot d g.1 (nth [::] row j) | row <- infos], g.2)).
+(** What a base set is worth, and what each other element gains beside it alone. [told]: by element and target, [::] for
+    nothing. *)
+Definition base_bound (told : seq (seq dmat)) (j : nat) (base : seq nat) : target_bound :=
+  let es := iota 0 (size infos) in
+  let row e := nth [::] (nth [::] told e) j in
+  let K := foldl (fun K e => if nilp (row e) then K else madd d K (row e)) (nth [::] highs j) [seq e <- es | e \in base] in
+  let D := mdet d K in
+  let wj := nth d0 ws j in
+  let gain e :=
+    if (e \in base) || nilp (row e) then d0
+    else dmul wj (log_quotient_up 110 400 (mdet d (madd d K (row e))) D) in
+  (j, ([seq gain e | e <- es], dmul wj (log_quotient_up 110 400 (dmul (mdet d (nth [::] ps j)) D) d1))).
 (** The tangents of single targets. *)
-Definition tangent_bounds (ts : seq (nat * touch)) : option (seq target_bound) :=
-  all_some [seq (if (t.1 < m)%N then (if gradient_at t.1 t.2 is Some g then Some (target_scores t.1 g) else None)
+Definition tangent_bounds (told : seq (seq dmat)) (ts : seq (nat * touch)) : option (seq target_bound) :=
+  all_some [seq (if (t.1 < m)%N then
+      match t.2, kind with
+      | BaseTouch base, LogDet => Some (base_bound told t.1 base)
+      | BaseTouch _, _ => None
+      | _, _ => if gradient_at t.1 t.2 is Some g then Some (target_scores t.1 g) else None
+      end
     else None) | t <- ts].
 (** A row has one inequality of each target; none is worth less than the largest eigenvalue. *)
 Definition row_ok (bounds : seq target_bound) (ks : seq nat) : bool :=
@@ -425,7 +442,8 @@ Definition check_upper_part (lows highs : seq dmat) (defects : seq (seq dyadic))
   let Ss := output_squares in let ps := prior_matrices in let infos := info_matrices in
   let grads := [seq gradient (objective pb) d m ws (outputs pb) Ss ps highs (prior_high pr) pt | pt <- points pr] in
   let rows := rows_part pr in
-  match all_some grads, tangent_bounds (objective pb) d m ws (outputs pb) Ss ps highs infos (prior_high pr) (tangent_list rows),
+  match all_some grads, tangent_bounds (objective pb) d m ws (outputs pb) Ss ps highs infos (prior_high pr)
+          (if objective pb is LogDet then told d infos defects else [::]) (tangent_list rows),
         enough_shown lows defects with
   | Some gs, Some tangents, Some top =>
     let pts := [seq point_scores d infos g | g <- gs] in

@@ -2,7 +2,7 @@
 From Coq Require Import ZArith.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp.algebra_tactics Require Import ring.
-From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Dyadic DyadicMatrix DyadicLog Outputs Graph Worth Scores Covers Lemmas Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
+From Ratt Require Import Extrema Teams Guarantees Quadratic Criteria Logdet Submodular Dyadic DyadicMatrix DyadicLog Outputs Graph Worth Scores Covers Lemmas Gains UpperTree LowerTree CaseTree Costs GroupProofs Sizes SizeProofs Forced Checker.
 Set Implicit Arguments.
 Unset Strict Implicit.
 Unset Printing Implicit Defensive.
@@ -432,7 +432,7 @@ Proof.
 move=> + okp; have [sL pL] := posterior_pd G okp j; set L := posterior _ _ _ j in sL pL.
 have info_dot (W : dmat) i : val (mdot d W (nth [::] (nth [::] (info_matrices pb) (p i)) j)) = \tr ((mx F d W)^T *m info_of (p i) j).
   by rewrite mx_dot nth_info ?element_lt.
-rewrite /gradient_at /target_value -/L; case e: (objective pb); case: t => [y|t v] //.
+rewrite /gradient_at /target_value -/L; case e: (objective pb); case: t => [y|t v|base] //.
 - move=> [<-] /=; set Z := touching d _ _ _; set W := mscale d _ _.
   pose Y : 'M[F]_(d, counted_rows j) := touch_mx F d (outputs pb) j Z.
   have We : (mx F d W)^T = weight_of j *: (Y *m Y^T) by rewrite mx_scale mx_outer -/Y linearZ /= trmx_mul trmxK.
@@ -657,12 +657,81 @@ by case: ifP => // _; rewrite val0.
 Qed.
 
 (** ** Inequalities of single targets *)
+Let all_told := told d (info_matrices pb) defects.
+(** A set is worth at most a base set and what each of its other elements gains beside that alone. *)
+Lemma base_boundP (j : target) base p (G : {set robot}) : objective pb = LogDet -> is_plan (team_of w) p ->
+  holds p G (base_bound d ws (prior_matrices pb) highs (info_matrices pb) all_told j base).2 (target_value j (contributed p G)).
+Proof.
+move=> e okp; split; first by rewrite /= size_map size_iota size_map infos_size.
+rewrite /base_bound; set es := iota 0 _; set row := fun e => nth [::] (nth [::] all_told e) j.
+set Kd := foldl _ _ _; set gain := fun e => if _ then d0 else _.
+pose S (x : element) := (x : nat) \in base; pose M (x : element) := info_of x j + (delta x j)%:M.
+have Ms x : symmetrical (M x) by rewrite /M /symmetrical linearD /= tr_scalar_mx info_symmetrical.
+have Mp x : psd (M x) by case: (deltaP x j).
+have rowE (x : element) : mx F d (row x) = M x := mx_told x j.
+have sz : size (info_matrices pb) = (top_element w).+1 by rewrite size_map infos_size /top_element prednK ?owners_pos.
+have KE : mx F d Kd = mx F d (nth [::] highs j) + \sum_(x | S x) M x.
+  have gen A s : mx F d (foldl (fun K e => if nilp (row e) then K else madd d K (row e)) A s) =
+      mx F d A + \sum_(e <- s) mx F d (row e).
+    elim: s A => [|x s IH] A /=; first by rewrite big_nil addr0.
+    rewrite IH big_cons; case: nilP => [->|_]; last by rewrite mx_add addrA.
+    by rewrite mx_nil add0r.
+  rewrite /Kd gen; congr (_ + _); rewrite big_filter /es sz.
+  rewrite (_ : iota 0 _ = index_iota 0 (top_element w).+1); last by rewrite /index_iota subn0.
+  by rewrite big_mkord; apply: eq_bigr => x _; apply: rowE.
+have [sP pP] := prior_good j; have [sH pH] := highP j; have [sL pL] := posterior_pd G okp j.
+set L := posterior _ _ _ j in sL pL; set K := mx F d Kd in KE.
+have sK : symmetrical K.
+  by rewrite KE /symmetrical linearD /= sH; congr (_ + _); apply: symmetrical_sum => x _; apply: Ms.
+have pK : pd K by rewrite KE; apply: pd_add; [exact: pd_above (pd_inv sP pP) pH | apply: psd_sum => x _].
+have P0 := det_gt0 sP pP; have K0 := det_gt0 sK pK.
+pose free := [seq i <- enum G | ~~ S (p i)].
+have split : \sum_(i in G) M (p i) = \sum_(i in G | S (p i)) M (p i) + \sum_(i <- free) M (p i).
+  by rewrite (bigID (fun i => S (p i))) /= /free big_filter big_enum_cond.
+have mono : ln (\det L) <= ln (\det (K + \sum_(i <- free) M (p i))).
+  apply: (logdet_mono (lnP e)) => //.
+    rewrite /symmetrical linearD /= sK; congr (_ + _); apply: symmetrical_sum => i _; exact: Ms.
+  have -> : K + \sum_(i <- free) M (p i) - L = (mx F d (nth [::] highs j) - invmx (prior_of j)) +
+      ((\sum_(x | S x) M x - \sum_(i in G | S (p i)) M (p i)) + \sum_(i in G) (M (p i) - info_of (p i) j)).
+    rewrite /L /posterior sum_contributed // sumrB split KE; set a := mx F d (nth _ highs j); set q := \sum_(x | S x) _.
+    set f := \sum_(i <- free) _; set u := \sum_(i in G | _) _; set t := \sum_(i in G) info_of _ _.
+    have -> : q - u + (u + f - t) = q + f - t by rewrite -[u + f - t]addrA [q - u + _]addrA subrK addrA.
+    by rewrite opprD -[a + q + f]addrA addrACA.
+  apply: psdD => //; apply: psdD.
+    have -> : \sum_(i in G | S (p i)) M (p i) = \sum_(x | S x) (if x \in contributed p G then M x else 0).
+      rewrite big_mkcondr -(sum_contributed G (fun x => if S x then M x else 0) okp) big_mkcond [RHS]big_mkcond.
+      by apply: eq_bigr => x _; case: (x \in _); case: (S x).
+    rewrite -sumrB; apply: psd_sum => x _; case: ifP => _; last by rewrite subr0.
+    by rewrite subrr => y; rewrite /form mulmx0 mul0mx mxE.
+  apply: psd_sum => i _; rewrite /M addrAC subrr add0r; apply: psd_scalar; by case: (deltaP (p i) j).
+have gains := logdet_sum_gains (lnP e) sK pK (fun i (_ : i \in free) => conj (Ms (p i)) (Mp (p i))).
+rewrite /target_value e -/L mulrN opprK -mulrDr val_mul nth_prior // -/(weight_of j).
+have le0 : ln (\det (prior_of j)) + ln (\det K) <=
+    val (log_quotient_up 110 400 (dmul (mdet d (unpack d (nth [::] (priors pb) j))) (mdet d Kd)) d1).
+  have := @log_quotient_upP F ln (lnP e) 110 400 (dmul (mdet d (unpack d (nth [::] (priors pb) j))) (mdet d Kd)) d1.
+  rewrite val_mul !mdetE -/(prior_of j) -/K val1 divr1 (lnM (lnP e)) //; apply; [exact: mulr_gt0 | exact: ltr01].
+have each i : val (nth d0 [seq gain x | x <- es] (p i)) =
+    weight_of j * (if S (p i) || nilp (row (p i)) then 0 else val (log_quotient_up 110 400 (mdet d (madd d Kd (row (p i)))) (mdet d Kd))).
+  rewrite (nth_map 0%N) ?size_iota ?sz ?ltn_ord // nth_iota ?sz ?ltn_ord // add0n /gain -/(S (p i)).
+  by case: ifP => _; rewrite ?val0 ?mulr0 // val_mul.
+rewrite /= (eq_bigr _ (fun i _ => each i)) -mulr_sumr -mulrDr; apply: ler_wpmul2l; first exact: weight_ge0.
+apply: le_trans (_ : ln (\det (prior_of j)) + (ln (\det K) + \sum_(i <- free) (ln (\det (K + M (p i))) - ln (\det K))) <= _).
+  by rewrite ler_add2l; apply: le_trans mono gains.
+rewrite addrA; apply: ler_add => //; rewrite /free big_filter big_enum_cond /= big_mkcondr; apply: ler_sum => i _.
+case Si: (S (p i)) => //=; case: nilP => [nil|_]; first by rewrite -rowE nil mx_nil addr0 subrr.
+have KM0 : 0 < \det (K + M (p i)).
+  by apply: det_gt0; [rewrite /symmetrical linearD /= sK Ms | apply: pd_add].
+have := @log_quotient_upP F ln (lnP e) 110 400 (mdet d (madd d Kd (row (p i)))) (mdet d Kd).
+rewrite !mdetE mx_add rowE -/K => /(_ KM0 K0); apply: le_trans.
+by rewrite -(lnV (lnP e)) // -lnM ?invr_gt0 //; exact: (lnP e).
+Qed.
+
 Section Inequalities.
 Variables (p : {ffun robot -> element}) (tangents : seq target_bound).
 Let ls := lemma_list (rows_part pr).
 Hypothesis okp : is_plan (team_of w) p.
 Hypothesis tangentsE : tangent_bounds (objective pb) d m ws (outputs pb) Ss (prior_matrices pb) highs (info_matrices pb)
-  (prior_high pr) (tangent_list (rows_part pr)) = Some tangents.
+  (prior_high pr) (if objective pb is LogDet then all_told else [::]) (tangent_list (rows_part pr)) = Some tangents.
 Hypothesis lemmas_ok : all (fun l => (lemma_target l < m)%N && check_lemma w tangents l) ls.
 Let bounds := tangents ++ [seq lemma_bound l | l <- ls].
 
@@ -670,10 +739,12 @@ Lemma listed_tangentP k (G : {set robot}) : (k < size tangents)%N -> exists2 j :
   (inequality_of tangents k).1 = j & holds p G (inequality_of tangents k).2 (target_value j (contributed p G)).
 Proof.
 have [szt h] := all_some_nth (0%N, MatrixTouch [::]) (0%N, ([::], d0)) k tangentsE; rewrite szt => kl; move: (h kl); rewrite /inequality_of.
-case: ifP => // jm; case eg: (gradient_at _ _ _ _ _ _ _ _ _ _) => [g|//] [<-].
-exists (Ordinal jm) => //; split; first by rewrite /= size_map size_map infos_size.
-apply: le_trans (gradient_atP (j:=Ordinal jm) G eg okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
-by apply: eq_bigr => i _ /=; rewrite (nth_map [::]) ?size_map ?infos_size ?element_lt.
+case: ifP => // jm; case et: (nth (0%N, MatrixTouch [::]) (tangent_list (rows_part pr)) k).2 => [y|t v|base]; last first.
+  case e: (objective pb) => // -[<-]; exists (Ordinal jm) => //; exact: (base_boundP (Ordinal jm) base G e okp).
+all: case eg: (gradient_at _ _ _ _ _ _ _ _ _ _) => [g|//] [<-].
+all: exists (Ordinal jm) => //; split; first by rewrite /= size_map size_map infos_size.
+all: apply: le_trans (gradient_atP (j:=Ordinal jm) G eg okp) _; rewrite ler_add2l le_eqVlt; apply/orP; left; apply/eqP.
+all: by apply: eq_bigr => i _ /=; rewrite (nth_map [::]) ?size_map ?infos_size ?element_lt.
 Qed.
 
 Lemma inequalityP k (G : {set robot}) : (k < size bounds)%N -> exists2 j : target,
@@ -796,7 +867,7 @@ Theorem upper_sound p : check_upper_part pb cl pr lows highs defects -> is_plan 
   worst_case (team_of w) value p <= val (upper cl).
 Proof.
 rewrite /check_upper_part; set groups := [seq seeing_groups w a | a <- listed pr].
-case eg : (all_some _) => [gs|//]; case et : (tangent_bounds _ _ _ _ _ _ _ _ _ _ _) => [tangents|//].
+case eg : (all_some _) => [gs|//]; case et : (tangent_bounds _ _ _ _ _ _ _ _ _ _ _ _) => [tangents|//].
 case es : (enough_shown _ _ _ _ _) => [top|//].
 set pts := [seq point_scores _ _ _ | _ <- gs]; set bounds := tangents ++ _.
 set cuts := cut_bounds _ _ _ _; set rows := row_bounds _ _ _ _.

@@ -40,7 +40,7 @@ class TargetTreeParams:
     ``searches`` : evaluations of one step's length
     ``nodes``, ``all_nodes`` : of one tree, and of all; then cases are leaves as they are. Files and the time to verify
         them grow with both
-    ``plain`` : nodes of a tree of tangents alone, which more checkers read, before bases are leaves, too (log-det)
+    ``plain`` : nodes of a tree of tangents alone, which are rational, before bases are leaves, too (log-det)
     ``divided`` : cases of one tree divided together, those with the largest bounds: fewer rounds against more nodes
     ``at_once`` : cases bounded together, for the memory that they take
     ``share`` : of the seconds left, likewise

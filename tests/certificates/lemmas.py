@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import partial
 from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
 
 from ratt_opt import Problem, TraceObjective, exhaustive_optimum
+from ratt_opt.certificates import stated_inequalities
+from ratt_opt.certificates.target_trees import TargetTreeParams, target_trees
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.write import write_certificate
 from ratt_opt.solvers.maxmin.proof import TargetLemma
 from tests.certificates.cases import one_leaf_per_plan
+
+
+def prefer_bases(monkeypatch) -> None:
+    """Let trees of log-dets have base sets at leaves, however few tangents would do."""
+    monkeypatch.setattr(stated_inequalities, "target_trees", partial(target_trees, params=TargetTreeParams(plain=0)))
 
 
 def touching(problem: Problem, target: int):

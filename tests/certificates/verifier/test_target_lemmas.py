@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
 from flint import ctx
 
 from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, exhaustive_optimum, verify_certificate
-from ratt_opt.certificates import stated_inequalities
 from ratt_opt.certificates.stated_inequalities import StatedInequalities
 from ratt_opt.certificates.stated_problem import statement_of
 from ratt_opt.certificates.target_trees import TargetTreeParams, target_trees
@@ -73,7 +71,7 @@ def test_a_lemma_holds_for_every_set_and_its_constant_is_the_least(seed):
 @pytest.mark.parametrize("seed", range(12))
 def test_lemmas_by_base_sets_hold_for_every_set(seed, monkeypatch):
     """Gains beside bases, in the place of tangents, for log-dets."""
-    monkeypatch.setattr(stated_inequalities, "target_trees", partial(target_trees, params=TargetTreeParams(plain=0)))
+    lemmas.prefer_bases(monkeypatch)
     check_against_all_sets(*drawn(seed, "logdet"))
 
 
