@@ -20,7 +20,7 @@ from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attack.task import AttackTask
@@ -131,6 +131,8 @@ def enumerate_by_values(task: AttackTask) -> Stop:
     f, plan = unmetered(task.problem.objective), task.values.plan
     free = sorted(set(range(task.problem.n_robots)) - threat.protected_robots)
     sizes = [threat.n_blinded] if threat.n_cut else range(threat.n_blinded, -1, -1)
+    if threat.n_cut == 0 and len(task.problem.communication.groups()) == 1:
+        return _enumerate_blinded(task, free, sizes)
     for cut, groups in partitions_by_few_cuts(threat, task.budget):
         blinded = chain.from_iterable(combinations(free, size) for size in sizes)
         while some := list(map(frozenset, islice(blinded, task.params.branching.at_once))):
@@ -142,5 +144,23 @@ def enumerate_by_values(task: AttackTask) -> Stop:
                 if max(worth[group] for group in parts) < task.bracket.upper:
                     task.budget.evaluate(len(parts))  # valued alone: batches may round otherwise
                     task.bracket.offer(Attack(blind, cut), max(f(plan[sorted(group)]) for group in parts))
+    task.bracket.raise_lower(task.bracket.upper)
+    return Stop.CLOSED
+
+
+def _enumerate_blinded(task: AttackTask, free: list[int], sizes: Iterable[int]) -> Stop:
+    """Find the worst attack if no link is cut: the team stays one group, valued in batches of its sets of robots."""
+    f, plan, n = unmetered(task.problem.objective), task.values.plan, task.values.n
+    for size in sizes:
+        blinded = combinations(free, size)
+        while some := list(islice(blinded, task.params.branching.at_once)):
+            task.budget.check()
+            sees = np.ones((len(some), n), dtype=np.bool_)
+            sees[np.arange(len(some))[:, None], np.array(some, dtype=np.int64).reshape(len(some), size)] = False
+            values = task.values.evaluate(sees)
+            worst = int(values.argmin())
+            if values[worst] < task.bracket.upper:
+                task.budget.evaluate(1)  # valued alone: batches may round otherwise
+                task.bracket.offer(Attack(frozenset(some[worst]), frozenset()), f(plan[sees[worst]].tolist()))
     task.bracket.raise_lower(task.bracket.upper)
     return Stop.CLOSED
