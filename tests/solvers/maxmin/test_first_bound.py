@@ -58,7 +58,7 @@ def turns_of(stage: Any) -> list[tuple[float, float]]:
 
 def check(turns: list[tuple[float, float]], tmp_path: Path, *, closes: bool) -> None:
     lowered = 0
-    for seed in range(16):
+    for seed in range(24):
         rng = np.random.default_rng([seed, 31])
         problem = random_problem(rng, int(rng.integers(2, 5)), kind=str(rng.choice(["trace", "logdet", "maxeig"])))
         best = ro.exhaustive_optimum(problem).lower
@@ -72,7 +72,7 @@ def check(turns: list[tuple[float, float]], tmp_path: Path, *, closes: bool) -> 
         for other, own in turns[before:]:
             assert own >= best - 1e-9 * abs(best) - 1e-10
             lowered += own < other
-        if seed % 5 == 0 and found.upper > 0:
+        if seed % 8 == 0 and found.upper > 0:
             ro.certify(problem, found, tmp_path / "proof.json")
     assert len(turns) > 1
     assert closes or lowered > 5
