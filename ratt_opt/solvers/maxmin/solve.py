@@ -87,7 +87,8 @@ def solve_maxmin(
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem, whose plan is used if the problem still allows it;
         what is enumerated needs none. Changes how long a search takes, not what it claims
-    params : of the algorithms: they decide how soon the bracket closes, not whether it holds
+    params : of the search for information criteria, and of coverage as a trace (searches by values have numbers of
+        their own): they decide how soon the bracket closes, not whether it holds
 
     Raises
     ------
