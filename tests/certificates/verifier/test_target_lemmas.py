@@ -164,6 +164,18 @@ def test_values_are_not_spaced_if_an_element_sees_badly(tmp_path):
             verify_certificate(_saved(lie, tmp_path / "lie.json"))
 
 
+def test_lemmas_are_proved_where_few_robots_may_choose(tmp_path):
+    """The problem is stated with a plan of idle robots, as others may be no plan."""
+    team = lemmas.covering(np.random.default_rng(3))
+    f = team.objective
+    information = np.concatenate([f.information, np.zeros((3, *f.information.shape[1:]))])
+    robot = [*team.robot.tolist(), 0, 1, 2]
+    problem = Problem(TraceObjective(f.prior, information), robot, None, 1, 0, at_most=2)
+    assert statement_of(problem).plan == (6, 7, 8)
+    wanted = [lemmas.drawn_lemma(problem, np.random.default_rng(4), j) for j in range(f.n_targets)]
+    assert len(read(problem, *stated(problem, wanted))) == f.n_targets
+
+
 def sweep(seeds, share, tmp_path):
     """Claim a little less than the optimum, then mutate tangents, lemmas, rows, spacing; returns how many mutants."""
     count = 0
