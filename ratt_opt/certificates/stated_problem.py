@@ -65,7 +65,7 @@ def prior_range_of(problem: Problem, record: dict[str, Any], plan: list[int]) ->
 
 
 def statement_of(problem: Problem) -> Statement:
-    """The statement of a problem as the verifier reads it, with some plan: of idle robots, where they may be."""
-    informed = problem.information_objective.information.any(axis=(1, 2, 3))
+    """The statement of a problem as the verifier reads it, with some plan, of idle robots if there are such."""
+    informed = abs(problem.information_objective.information).sum(axis=(1, 2, 3))
     record, plan = problem_document(problem), [int(own[informed[own].argmin()]) for own in problem.choices]
     return Statement(record, plan, prior_range_of(problem, record, plan))

@@ -164,7 +164,7 @@ def test_values_are_not_spaced_if_an_element_sees_badly(tmp_path):
             verify_certificate(_saved(lie, tmp_path / "lie.json"))
 
 
-def test_lemmas_are_proved_where_few_robots_may_choose(tmp_path):
+def test_lemmas_are_proved_if_few_robots_may_choose():
     """The problem is stated with a plan of idle robots, as others may be no plan."""
     team = lemmas.covering(np.random.default_rng(3))
     f = team.objective
