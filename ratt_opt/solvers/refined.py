@@ -48,8 +48,8 @@ __all__ = ["RefinedParams", "RefinedPlan", "refined"]
 class RefinedParams:
     """Times of the proof of a plan's worst case: more proves more of the plan, and searches fewer others.
 
-    ``proof`` : share of the remaining time for proving the worst case of the best plan; ``short_proof`` : if all
-        attacks that matter are known, and for functions known by their values
+    ``proof`` : share of the remaining time for proving the worst case of the best plan
+    ``short_proof`` : the same if all attacks that matter are known, and for functions known by their values
     ``best`` : share of the proof's time for the best plan; the rest is for an attack on RATT's plan
     ``nodes`` : of one exact attack: nearly all on teams of up to 30 robots close in less
     ``patience`` : kicks in vain that end a search without a limit of time

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 SCENARIO = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0)
 INFORMATION = InformationInput(
-    prior=[[[2.0]]], information=[[[[1.0]]], [[[2.0]]], [[[0.5]]]], robot=[0, 0, 1], alpha_s=1, alpha_c=0
+    prior=[[[2.0]]], information=[[[[1.0]]], [[[0.0]]], [[[0.0]]]], robot=[0, 0, 1], alpha_s=1, alpha_c=0
 )
 ROBOT, TARGET = SCENARIO.robots[0], SCENARIO.targets[0]
 
@@ -58,6 +58,7 @@ GOOD_AND_BAD: list[tuple[Record, dict[str, tuple[Any, Any]]]] = [
             "element_positions": (((0.0, 0.0),) * 3, ((0.0, float("nan")),) * 3),
             "target_positions": (((0.0, 0.0),), ()),
             "output": (((2.0,),), ((1.0, 2.0),)),
+            "at_most": (1, 3),
             "units": (("m",), ("m", "m")),
             "element_headings": ((0.0, 1.0, 2.0), (0.0,)),
             "element_controls": (((1.0, 0.0),) * 3, ((1.0, 0.0),)),
