@@ -12,7 +12,7 @@ from analysis.tables import append_csv
 from tests.documents import ROOT
 
 RECORD = ROOT / "tests" / "golden"
-SECONDS = 60.0
+SECONDS = 20.0
 """Of the record of the sample that is asked again."""
 
 
