@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from analysis.faults.moments import Square
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import OBJECTIVES
 from tests.watchdog import ends_within
@@ -86,20 +87,6 @@ def test_exchanges_on_complete_graphs_end_where_gains_are_rounding(seed, n_robot
     with ends_within(8):
         found = ro.worst_case_attack(problem, np.arange(n_robots), time_limit=2)
     assert found.lower <= found.upper
-
-
-class Square(ro.SetFunction):
-    """A non-decreasing function without theory: the square of a sum of weights."""
-
-    def __init__(self, weights: np.ndarray) -> None:
-        self.weights = weights
-
-    @property
-    def n(self) -> int:
-        return len(self.weights)
-
-    def evaluate(self, membership: np.ndarray) -> np.ndarray:
-        return (membership @ self.weights) ** 2
 
 
 def check_evaluations(seed: int) -> None:

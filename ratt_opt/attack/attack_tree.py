@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from ratt_opt.attack.staging import divide_nodes
 from ratt_opt.budget import Stop
 from ratt_opt.search.open_nodes import OpenNodes
 
@@ -62,18 +63,7 @@ class AttackTree:
         ------
         OutOfBudget : time, nodes or evaluations are spent.
         """
-        bracket = self.task.bracket
-        while self._nodes:
-            node = self._nodes.take()
-            if not self._nodes.is_in_depth:
-                bracket.raise_lower(min(bracket.goal, self._nodes.bound))
-            if bracket.is_closed:
-                return Stop.CLOSED
-            if node.bound < bracket.goal:
-                self.task.budget.spend()
-                self._divide(node)
-            self._nodes.done()
-        bracket.raise_lower(bracket.goal)
+        divide_nodes(self.task, self._nodes, self._divide)
         return Stop.CLOSED
 
     def _divide(self, node: _AttackNode) -> None:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ratt_opt.attack.plan_parts import parts_of_plan, refuse_larger_gain
+from ratt_opt.attack.staging import divide_nodes
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.highs import LinearProgram, rows_of
@@ -80,19 +81,9 @@ class BlindingTree:
         OutOfBudget : time, nodes or evaluations are spent.
         InputError : the function is not submodular.
         """
-        bracket = self.task.bracket
-        while self._nodes:
-            node = self._nodes.take()
-            if not self._nodes.is_in_depth:
-                bracket.raise_lower(min(bracket.goal, self._nodes.bound))
-            if bracket.is_closed:
-                break
-            if node.bound < bracket.goal:
-                self.task.budget.spend()
-                self._divide(node)
-            self._nodes.done()
-        # If values have a spacing, none lies between the ends.
-        bracket.raise_lower(bracket.upper if self._spacing > 0 else bracket.goal)
+        divide_nodes(self.task, self._nodes, self._divide)
+        if self._spacing > 0:  # no value lies between the ends
+            self.task.bracket.raise_lower(self.task.bracket.upper)
         return Stop.CLOSED
 
     def _divide(self, node: _Node) -> None:

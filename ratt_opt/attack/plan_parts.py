@@ -48,10 +48,6 @@ class PlanPart:
         gains[self.robots[own]] = np.diff(self._values(sets))
         return gains
 
-    def value(self, senses: BoolArray) -> float:
-        """Value of the sensing robots (N,) beyond that of none."""
-        return float(np.diff(self._values(np.array([np.zeros(len(self.robots)), senses[self.robots]]) > 0))[0])
-
     def _values(self, sets: BoolArray) -> FloatArray:
         k = len(self.robots)
         if k > MOST_LISTED:

@@ -5,18 +5,19 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
 
 from ratt_opt.attack.task import StageRecord
 from ratt_opt.budget import Stop
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.task import AttackTask, Resumable
+    from ratt_opt.search.open_nodes import OpenNodes
 
-__all__ = ["WHOLE", "Share", "Stage", "go_on", "recorded", "run_stages", "without_stages"]
+__all__ = ["WHOLE", "Share", "Stage", "divide_nodes", "go_on", "recorded", "run_stages", "without_stages"]
 
 
 class Staged(Protocol):
@@ -139,6 +140,27 @@ def recorded(task: AttackTask, name: str) -> Iterator[None]:
                     upper=bracket.upper,
                 )
             )
+
+
+def divide_nodes(task: AttackTask, nodes: OpenNodes[Any], divide: Callable[[Any], None]) -> None:
+    """Divide nodes until none is below the goal of the bracket, whose lower end rises with their bounds.
+
+    Raises
+    ------
+    OutOfBudget : time, nodes or evaluations are spent.
+    """
+    bracket = task.bracket
+    while nodes:
+        node = nodes.take()
+        if not nodes.is_in_depth:
+            bracket.raise_lower(min(bracket.goal, nodes.bound))
+        if bracket.is_closed:
+            return
+        if node.bound < bracket.goal:
+            task.budget.spend()
+            divide(node)
+        nodes.done()
+    bracket.raise_lower(bracket.goal)
 
 
 def go_on(task: AttackTask, search: Resumable) -> Stop:

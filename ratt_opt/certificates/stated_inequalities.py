@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -118,10 +119,10 @@ class StatedInequalities:
         if not self._proved:
             return []
         lemmas = [
-            TargetLemma(target=given.target, constant=given.constant, scores=_short_scores(given.scores))
-            for given in self._proved
+            replace(given, scores=np.array(_short(given.scores.tolist(), LEMMA_DIGITS))) for given in self._proved
         ]
-        trees = [self._nodes(lemma.target, tree) for lemma, tree in self._with_trees(lemmas)]
+        grown = target_trees(self._problem, lemmas)
+        trees = [self._nodes(lemma.target, tree) for lemma, tree in zip(lemmas, grown, strict=True)]
         about = statement_of(self._problem)
         found = []
         with ctx.workprec(PRECISION):
@@ -143,9 +144,6 @@ class StatedInequalities:
                     }
                 )
         return found
-
-    def _with_trees(self, lemmas: list[TargetLemma]) -> list[tuple[TargetLemma, TargetTree]]:
-        return list(zip(lemmas, target_trees(self._problem, lemmas), strict=True))
 
     def _nodes(self, target: int, root: TargetTree) -> list[Any]:
         """A tree in preorder: the number of a leaf's tangent, or a branch."""
@@ -171,10 +169,6 @@ def _short(value: Any, digits: int) -> Any:
     if isinstance(value, list):
         return [_short(item, digits) for item in value]
     return value if isinstance(value, int) else float(f"{value:.{digits}g}")
-
-
-def _short_scores(scores: FloatArray) -> FloatArray:
-    return np.array([float(f"{score:.{LEMMA_DIGITS}g}") for score in scores])
 
 
 def round_up(bound: fmpq | arb) -> float:

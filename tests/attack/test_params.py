@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from analysis.faults.moments import Square
 from ratt_opt import AttackParams
 from ratt_opt.attack.params import AT_LEAST_ONE
 from tests.oracles import brute_force_worst_case
@@ -21,20 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 TEMPERATURES = ("hot", "warm", "cold")
-
-
-class Square(ro.SetFunction):
-    """The square of a sum of weights, known by its values alone."""
-
-    def __init__(self, weights: np.ndarray) -> None:
-        self.weights = weights
-
-    @property
-    def n(self) -> int:
-        return len(self.weights)
-
-    def evaluate(self, membership: np.ndarray) -> np.ndarray:
-        return (membership @ self.weights) ** 2
 
 
 @cache
