@@ -22,7 +22,6 @@ class StageParams:
     ``first_bound``, ``first_bound_nodes`` : forced size on dense graphs, at first; ``bound``, ``bound_nodes`` : later
     ``sizes`` : groups of possible sizes. ``annealed_values`` : annealing by values alone
     ``blinded_sets`` : of robots; of more, those of submodular functions are bounded instead of valued one by one
-    ``blinded_nodes`` : of that search if nothing is limited: seconds
     ``renewed`` : multiple of the earlier attack's seconds from which a resumed one runs its first stages again
     """
 
@@ -39,7 +38,6 @@ class StageParams:
     sizes: float = 0.7
     annealed_values: float = 0.5
     blinded_sets: int = 20_000
-    blinded_nodes: int = 1_000
     renewed: float = 4.0
 
 

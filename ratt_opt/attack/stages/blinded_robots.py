@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attack.blinding_tree import BlindingTree
 from ratt_opt.attack.stages.attack_state import AttackState
-from ratt_opt.attack.staging import Share, Stage, go_on
+from ratt_opt.attack.staging import Stage, go_on
 from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.params import AttackParams
     from ratt_opt.budget import Stop
 
-__all__ = ["BlindedRobotsStage", "FewBlindedRobotsStage"]
+__all__ = ["BlindedRobotsStage"]
 
 
 class BlindedRobotsStage(Stage[AttackState]):
@@ -23,25 +22,13 @@ class BlindedRobotsStage(Stage[AttackState]):
     name = "blinded robots"
 
     def applies(self, attack: AttackState) -> bool:
-        """Function says it is submodular and never falls, one group, no links to cut, over 20,000 sets; a limit."""
-        return attack.is_limited and _is_one_submodular_group(attack)
+        """Submodular, non-decreasing function, one group, over 20,000 sets; a limit, or no other search asks."""
+        return (attack.is_limited or not attack.is_inner) and _is_one_submodular_group(attack)
 
     def run(self, attack: AttackState) -> Stop:
         """Branch and bound over sets of blinded robots, by modular minorants."""
         attack.task.budget.check()
         return go_on(attack.task, BlindingTree(attack.task))
-
-
-class FewBlindedRobotsStage(BlindedRobotsStage):
-    """Stage that ends soon if nothing is limited."""
-
-    def applies(self, attack: AttackState) -> bool:
-        """Such a function and such sets; no limit, no other search asks."""
-        return not (attack.is_limited or attack.is_inner) and _is_one_submodular_group(attack)
-
-    def share(self, params: AttackParams) -> Share:
-        """Return a number of nodes that takes some seconds."""
-        return Share(part=1.0, max_nodes=params.stages.blinded_nodes)
 
 
 def _is_one_submodular_group(attack: AttackState) -> bool:

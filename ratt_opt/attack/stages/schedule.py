@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.attack.stages.all_sets import ThresholdsOfFewStage, ThresholdsStage
 from ratt_opt.attack.stages.annealed_values import AnnealedOwnCriterionStage, AnnealedValuesStage
-from ratt_opt.attack.stages.blinded_robots import BlindedRobotsStage, FewBlindedRobotsStage
+from ratt_opt.attack.stages.blinded_robots import BlindedRobotsStage
 from ratt_opt.attack.stages.branch_and_bound import (
     BranchAndBoundLaterStage,
     BranchAndBoundOfOwnCriterionStage,
@@ -40,7 +40,6 @@ VALUE_STAGES: tuple[Stage[AttackState], ...] = (
     CountedRobotsStage(),
     SingleValuesStage(),
     BlindedRobotsStage(),
-    FewBlindedRobotsStage(),
     EveryValuedAttackStage(),
     ExchangesStage(),
     AnnealedValuesStage(),
