@@ -38,6 +38,8 @@ class PlanAttacks:
         self.problem = metered_problem(problem, budget)
         self.elements, self.lower = elements, lower
         self.worst_case: AttackResult | None = None
+        self._is_kept = False
+        """True if ``lower`` was proved of ``elements``, here or by another search."""
         self.on_improvement: Callable[[IntArray], object] | None = None
         """Called with each plan that is kept."""
         self.known: dict[Attack, list[frozenset[int]]] = {}
@@ -67,7 +69,7 @@ class PlanAttacks:
         part = self._budget.part(ATTACK_SHARE) if part is None else part
         key = elements.tobytes()
         memory = self._begun.pop(key, None) or AttackMemory()
-        if self.worst_case is not None:
+        if self._is_kept:
             aim = max(aim, self.lower)  # a plan that keeps no more is of no use
         result = worst_case_attack_unrounded(
             self.problem, elements, AttackOptions(budget=part, aim=aim, memory=memory, brief=True)
@@ -79,13 +81,21 @@ class PlanAttacks:
             first = {k: self._begun[k] for k in [self._first] if k in self._begun}
             self._begun = first | {key: memory}
         self.known.setdefault(result.attack, self._given.groups_left(result.attack))
-        if self.worst_case is None or result.lower > self.lower:
-            self.elements, self.lower, self.worst_case = elements.copy(), max(result.lower, self.lower), result
-            if self.on_improvement is not None:
-                self.on_improvement(self.elements)
+        if not self._is_kept or result.lower > self.lower:
+            self._keep(elements.copy(), max(result.lower, self.lower), result)
         if result.stop is Stop.INTERRUPTED:
             raise OutOfBudget(result.stop)
         return result
+
+    def learn(self, elements: IntArray, lower: float) -> None:
+        """Keep a plan of which another search proved more."""
+        if lower > self.lower:
+            self._keep(elements, lower, None)
+
+    def _keep(self, elements: IntArray, lower: float, worst_case: AttackResult | None) -> None:
+        self.elements, self.lower, self.worst_case, self._is_kept = elements, lower, worst_case, True
+        if self.on_improvement is not None:
+            self.on_improvement(elements)
 
     def go_on(self, elements: IntArray) -> None:
         """Attack a plan with all that is left if a share ended its last attack."""

@@ -113,9 +113,7 @@ class PlanSearch:
         if found is None:
             return
         self._bound(found.upper)
-        if found.lower > self._attacks.lower:
-            self._attacks.elements, self._attacks.lower = found.elements, found.lower
-            self._attacks.worst_case = None
+        self._attacks.learn(found.elements, found.lower)
 
     def run(self, gap: float) -> Stop:
         """Climb from the first plans, bound all plans, walk on from the best one, then divide all plans."""

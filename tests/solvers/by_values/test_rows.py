@@ -121,6 +121,15 @@ def test_an_upper_end_is_known_before_the_search_of_the_trace_begins(monkeypatch
     assert found.upper == int(found.upper) <= 1.3 * found.lower
 
 
+def test_what_a_search_of_the_trace_proved_is_claimed_of_its_own_plan():
+    """The next plan that was attacked once took the place of the trace's, which had kept more."""
+    rng = np.random.default_rng(1)
+    f = ro.Coverage(rng.random((60, 60)) < 0.12, rng.integers(1, 4, 60).astype(float))
+    one = ro.Problem(f, np.repeat(np.arange(10), 6), None, 3, 0)
+    found = ro.solve_maxmin(one, max_nodes=2)
+    assert found.lower <= worst(one, found.elements)
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("nothing_is_enumerated")
 def test_both_ends_hold_against_brute_force_on_many():
