@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ratt_opt.attack.staging import divide_nodes
-from ratt_opt.budget import Stop
+from ratt_opt.attack.staging import AttackNodes
 from ratt_opt.search.open_nodes import OpenNodes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from ratt_opt._validation import FloatArray
     from ratt_opt.attack.task import AttackTask
 
@@ -34,8 +35,8 @@ class _AttackNode(NamedTuple):
     blind: tuple[bool, ...]
 
 
-class AttackTree:
-    """Resumable branch and bound over attacks; the task's bracket is valid whenever it stops."""
+class AttackTree(AttackNodes[_AttackNode, _AttackNode]):
+    """Branch and bound over attacks: the group of one robot after the other."""
 
     def __init__(self, task: AttackTask) -> None:
         self.task = task
@@ -54,23 +55,17 @@ class AttackTree:
         self._most_blind, self._most_cut = threat.n_blinded, problem.alpha_c
         self._count = 0
         root = _AttackNode(-np.inf, len(self._order), 0, (), ())
-        self._nodes = OpenNodes([root], task.params.branching.most_open)
+        self.nodes = OpenNodes([root], task.params.branching.most_open)
 
-    def run(self) -> Stop:
-        """Divide nodes until none is below the goal.
+    def explore(self, node: _AttackNode) -> _AttackNode | None:
+        """Offer the attack if all robots are placed; a bound has come with the placement of each."""
+        if node.left:
+            return node
+        self._offer(node)
+        return None
 
-        Raises
-        ------
-        OutOfBudget : time, nodes or evaluations are spent.
-        """
-        divide_nodes(self.task, self._nodes, self._divide)
-        return Stop.CLOSED
-
-    def _divide(self, node: _AttackNode) -> None:
-        """Branch on the group of one more robot, within the budgets; if all are placed, offer the attack."""
-        if not node.left:
-            self._offer(node)
-            return
+    def branch(self, node: _AttackNode) -> Iterator[_AttackNode]:
+        """Branch on the group of one more robot, within the budgets."""
         k, groups = len(node.group), max(node.group, default=-1) + 1
         inside = np.bincount([node.group[j] for j in self._near[k]], minlength=groups + 1)
         held = {node.group[j] for j in self._held[k]}
@@ -80,7 +75,7 @@ class AttackTree:
         children = [self._child(node, g, max(node.bound, value), is_blind=False) for g, value in worth]
         if not self._sees[k] and sum(node.blind) < self._most_blind:
             children += [self._child(node, g, node.bound, is_blind=True) for g in homes]
-        self._nodes.keep(c for c in sorted(children, reverse=True) if c.bound < self.task.bracket.goal)
+        return (c for c in sorted(children, reverse=True) if c.bound < self.task.bracket.goal)
 
     def _child(self, node: _AttackNode, group: int, bound: float, *, is_blind: bool) -> _AttackNode:
         self._count += 1

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ratt_opt.attack.plan_parts import parts_of_plan, refuse_larger_gain
-from ratt_opt.attack.staging import divide_nodes
+from ratt_opt.attack.staging import AttackNodes
 from ratt_opt.budget import Stop
 from ratt_opt.errors import InputError
 from ratt_opt.highs import LinearProgram, rows_of
@@ -48,8 +48,8 @@ class _Node(NamedTuple):
     high: BoolArray
 
 
-class BlindingTree:
-    """Resumable branch and bound over blinded robots; the task's bracket is valid whenever it stops."""
+class BlindingTree(AttackNodes[_Node, "tuple[_Node, float, FloatArray]"]):
+    """Branch and bound over blinded robots, by rows of a linear program."""
 
     def __init__(self, task: AttackTask) -> None:
         self.task = task
@@ -70,27 +70,24 @@ class BlindingTree:
         held = np.isin(np.arange(n), list(problem.protected_robots))
         self._count = 0
         root = _Node(-np.inf, n, 0, held, np.ones(n, dtype=np.bool_))
-        self._nodes = OpenNodes([root], task.params.branching.most_open)
+        self.nodes = OpenNodes([root], task.params.branching.most_open)
         self._add_rows(np.full(n, self._size / n), np.full(count, -np.inf))
 
     def run(self) -> Stop:
-        """Divide nodes until none is below the goal.
-
-        Raises
-        ------
-        OutOfBudget : time, nodes or evaluations are spent.
-        InputError : the function is not submodular.
-        """
-        divide_nodes(self.task, self._nodes, self._divide)
-        if self._spacing > 0:  # no value lies between the ends
+        """Divide nodes; at the end no value lies between the ends of multiples."""
+        super().run()
+        if self._spacing > 0:
             self.task.bracket.raise_lower(self.task.bracket.upper)
         return Stop.CLOSED
 
-    def _divide(self, node: _Node) -> None:
-        """Bound a node, then divide it by the robot whose share is least whole."""
+    def explore(self, node: _Node) -> tuple[_Node, float, FloatArray] | None:
+        """Bound a node; its bound, and a fractional set."""
         bound, share = self._bounded(node)
-        if bound >= self.task.bracket.goal or share is None:
-            return
+        return None if bound >= self.task.bracket.goal or share is None else (node, bound, share)
+
+    def branch(self, bounded: tuple[_Node, float, FloatArray]) -> list[_Node]:
+        """Branch on the robot whose share is least whole."""
+        node, bound, share = bounded
         free = np.flatnonzero(node.low != node.high)
         robot = int(free[np.abs(share[free] - 1 / 2).argmin()])
         children = []
@@ -100,7 +97,7 @@ class BlindingTree:
             if low.sum() <= self._size <= high.sum():
                 self._count += 1
                 children.append(_Node(bound, len(free) - 1, self._count, low, high))
-        self._nodes.keep(children)
+        return children
 
     def _bounded(self, node: _Node) -> tuple[float, FloatArray | None]:
         """A bound on the sets of a node, and a fractional set; none if all sets of the node have been valued."""

@@ -5,19 +5,20 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from ratt_opt.attack.task import StageRecord
 from ratt_opt.budget import Stop
+from ratt_opt.search.branch_and_bound import divide_nodes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.task import AttackTask, Resumable
-    from ratt_opt.search.open_nodes import OpenNodes
+    from ratt_opt.search.open_nodes import OpenNode, OpenNodes
 
-__all__ = ["WHOLE", "Share", "Stage", "divide_nodes", "go_on", "recorded", "run_stages", "without_stages"]
+__all__ = ["WHOLE", "AttackNodes", "Share", "Stage", "go_on", "recorded", "run_stages", "without_stages"]
 
 
 class Staged(Protocol):
@@ -27,6 +28,8 @@ class Staged(Protocol):
 
 
 S = TypeVar("S", bound=Staged)
+N = TypeVar("N", bound="OpenNode")
+B = TypeVar("B")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,25 +145,45 @@ def recorded(task: AttackTask, name: str) -> Iterator[None]:
             )
 
 
-def divide_nodes(task: AttackTask, nodes: OpenNodes[Any], divide: Callable[[Any], None]) -> None:
-    """Divide nodes until none is below the goal of the bracket, whose lower end rises with their bounds.
+class AttackNodes(Generic[N, B]):
+    """Branch and bound over attacks, resumable; the task's bracket, whose lower end rises, is valid whenever it stops.
 
-    Raises
-    ------
-    OutOfBudget : time, nodes or evaluations are spent.
+    A tree has open ``nodes``, its ``explore`` bounds one of interest, and its ``branch`` divides it.
     """
-    bracket = task.bracket
-    while nodes:
-        node = nodes.take()
-        if not nodes.is_in_depth:
-            bracket.raise_lower(min(bracket.goal, nodes.bound))
-        if bracket.is_closed:
-            return
-        if node.bound < bracket.goal:
-            task.budget.spend()
-            divide(node)
-        nodes.done()
-    bracket.raise_lower(bracket.goal)
+
+    task: AttackTask
+    nodes: OpenNodes[N]
+
+    def run(self) -> Stop:
+        """Divide nodes until none is below the goal of the bracket.
+
+        Raises
+        ------
+        OutOfBudget : time, nodes or evaluations are spent.
+        InputError : the function falls, or is not submodular though it says so.
+        """
+        return divide_nodes(self.nodes, self) or Stop.CLOSED
+
+    def stop(self) -> Stop | None:
+        """Raise the lower end to the least bound; stop once the bracket is closed."""
+        bracket = self.task.bracket
+        bracket.raise_lower(min(bracket.goal, self.nodes.bound))
+        return Stop.CLOSED if bracket.is_closed else None
+
+    def bound(self, node: N) -> B | None:
+        """Explore a node below the goal."""
+        if node.bound >= self.task.bracket.goal:
+            return None
+        self.task.budget.spend()
+        return self.explore(node)
+
+    def explore(self, node: N) -> B | None:
+        """Bound a node and offer its attacks; ``None`` if it holds none of interest."""
+        raise NotImplementedError
+
+    def branch(self, bounded: B) -> Iterable[N]:
+        """Return the children of a node."""
+        raise NotImplementedError
 
 
 def go_on(task: AttackTask, search: Resumable) -> Stop:

@@ -1,5 +1,5 @@
-"""Branch and bound: open nodes by their bounds, safe against limits and interrupts.
+"""Branch and bound: one loop over open nodes, safe against limits and interrupts.
 
-Open ``open_nodes.py``: take a node, keep its children, say that it is done. Whatever ends the search in between, no
-node is lost, and the bound holds.
+Open ``branch_and_bound.py``: the calls that a search answers, and the loop that makes them. ``open_nodes.py`` keeps the
+nodes. Whatever ends the search, no node is lost, and the bound holds.
 """

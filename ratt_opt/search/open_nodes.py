@@ -1,25 +1,18 @@
 """Open nodes of a branch and bound that may be stopped at any moment and goes on later.
 
-A search is four calls of its own (bound a node, branch, try a solution, say which bound closes all) and this loop::
-
-    while nodes and nodes.bound < goal:
-        node = nodes.take()
-        ...  # bound the node, offer what it suggests
-        nodes.keep(children)
-        nodes.done()
-
 A node is in hand from ``take`` to ``done``. If a limit or an interrupt ends the search in between, it is still in hand:
 it counts for the bound, and the next ``take`` returns it again. Children that were kept before are divided twice then,
-which costs time and proves the same.
+which costs time and proves the same. ``branch_and_bound.py`` is the loop over them.
 """
 
 from __future__ import annotations
 
 from heapq import heapify, heappop, heappush
+from itertools import chain
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
 __all__ = ["OpenNodes"]
 
@@ -40,8 +33,8 @@ N = TypeVar("N", bound=OpenNode)
 class OpenNodes(Generic[N]):
     """Nodes that are left, the least bound first.
 
-    ``most`` : nodes kept by their bounds (memory); once there are as many, new ones are searched in depth, last in
-    first out, and those bound nothing: what they come from does
+    ``most`` : nodes that are taken by their bounds (memory); once there are as many, new ones are taken in depth, the
+    last one first. With 0 all are.
     """
 
     def __init__(self, nodes: Iterable[N], most: float = float("inf")) -> None:
@@ -54,15 +47,18 @@ class OpenNodes(Generic[N]):
     def __len__(self) -> int:
         return len(self._heap) + len(self._deep) + len(self._hand)
 
-    @property
-    def is_in_depth(self) -> bool:
-        """Tell whether some nodes are not kept by their bounds: :attr:`bound` says nothing about these."""
-        return bool(self._deep)
+    def __iter__(self) -> Iterator[N]:
+        return chain(self._hand, self._deep, self._heap)
 
     @property
     def bound(self) -> Any:
-        """Least bound of the nodes kept by their bounds, the one in hand included; infinite if there is none."""
-        return min((node.bound for node in (*self._hand, *self._heap[:1])), default=float("inf"))
+        """Least bound of all nodes, the one in hand included; infinite if there is none."""
+        return min((node.bound for node in chain(self._hand, self._deep, self._heap[:1])), default=float("inf"))
+
+    @property
+    def in_hand(self) -> N | None:
+        """The node that was taken and is not done, if any."""
+        return self._hand[0] if self._hand else None
 
     def take(self) -> N:
         """The node in hand; else the last one in depth; else the one of the least bound."""
@@ -92,6 +88,13 @@ class OpenNodes(Generic[N]):
     def done(self) -> None:
         """Drop the node in hand: it is closed, or its children are kept."""
         self._hand.clear()
+
+    def prune(self, is_closed: Callable[[N], bool]) -> None:
+        """Drop the node of the least bound, and the last one in depth, as long as they are closed."""
+        while self._deep and is_closed(self._deep[-1]):
+            self._deep.pop()
+        while self._heap and is_closed(self._heap[0]):
+            heappop(self._heap)
 
     def clear(self) -> None:
         """Drop every node: all are closed."""

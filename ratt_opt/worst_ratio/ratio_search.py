@@ -18,10 +18,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.budget import Stop
 from ratt_opt.errors import ProofError
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.outcomes import non_dominated_outcomes
 from ratt_opt.graph.threat import Threat
+from ratt_opt.search.branch_and_bound import divide_nodes
 from ratt_opt.search.open_nodes import OpenNodes
 from ratt_opt.worst_ratio.program import (
     BEHIND,
@@ -34,7 +36,7 @@ from ratt_opt.worst_ratio.program import (
 from ratt_opt.worst_ratio.witness import scaled_values
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
     from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
@@ -155,9 +157,8 @@ class RatioSearch:
 
     def run(self, budget: Budget) -> None:
         """Search to the end, or until the budget is spent (``OutOfBudget``); the bracket is valid either way."""
-        while self.open and self.open.bound < self.upper:
-            self._expand(self.open.take(), budget)
-            self.open.done()
+        self._budget = budget
+        divide_nodes(self.open, self)
 
     @property
     def lower(self) -> Fraction:
@@ -165,24 +166,33 @@ class RatioSearch:
         waiting = self.open.bound if self.open else Fraction(1)
         return max(self.floor, min(self.closed, waiting, self.upper))
 
-    def _expand(self, node: _RatioNode, budget: Budget) -> None:
-        """Solve the node in hand and keep its children."""
-        claimed = self._solve(node, budget)
-        bound = node.bound if claimed is None else max(node.bound, proved_bound(self.program, claimed, budget))
+    def stop(self) -> Stop | None:
+        """Stop once no node has a bound below the ratio that a table attains."""
+        return Stop.CLOSED if self.open.bound >= self.upper else None
+
+    def bound(self, node: _RatioNode) -> tuple[_RatioNode, Fraction, Groups] | None:
+        """Solve a node; its bound, and the groups of an outcome that its plan misses, one of which must reach 1."""
+        claimed = self._solve(node, self._budget)
+        bound = node.bound if claimed is None else max(node.bound, proved_bound(self.program, claimed, self._budget))
         self.nodes += 1
         if bound >= self.upper:
-            return
+            return None
         missed = None if claimed is None else self._missed_outcome(node, claimed)
         if missed is None:
             if claimed is not None:
                 self._record(node, claimed)
             self.closed = min(self.closed, max(bound, self.floor))
-            return
+            return None
+        return node, bound, missed
+
+    def branch(self, bounded: tuple[_RatioNode, Fraction, Groups]) -> Iterator[_RatioNode]:
+        """Branch on the group that reaches value 1."""
+        node, bound, missed = bounded
         for group in missed:
             # A group that contains one known to reach 1 reaches 1: only the smallest are kept.
             saved = frozenset(s for s in node.saved if s & group != group) | {group}
             if (node.attack, saved) not in self._seen:
-                self.open.keep([_RatioNode(bound, node.height - 1, len(self._seen) + 1, node.attack, saved)])
+                yield _RatioNode(bound, node.height - 1, len(self._seen) + 1, node.attack, saved)
                 self._seen.add((node.attack, saved))
 
     def _used(self, node: _RatioNode) -> list[int]:

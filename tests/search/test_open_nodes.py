@@ -36,8 +36,7 @@ def searched(values, most, stops):
     while nodes:
         try:
             while nodes:
-                if not nodes.is_in_depth:
-                    assert min(nodes.bound, best) <= values.min()
+                assert min(nodes.bound, best) <= values.min()
                 part = nodes.take()
                 if part.last - part.first == 1:
                     best = min(best, values[part.first])
@@ -78,11 +77,13 @@ def test_the_least_bound_comes_first_and_the_node_in_hand_counts():
     assert not nodes
 
 
-def test_beyond_the_most_the_last_child_comes_first():
+def test_beyond_the_most_the_last_child_comes_first_and_all_count():
     nodes = OpenNodes([Part(0.0, 0, 0, 1)], most=0)
     nodes.take()
-    nodes.keep([Part(5.0, 1, 0, 1), Part(7.0, 2, 0, 1)])
+    nodes.keep([Part(7.0, 1, 0, 1), Part(5.0, 2, 0, 1), Part(9.0, 3, 0, 1)])
     nodes.done()
-    assert nodes.is_in_depth
-    assert nodes.bound == np.inf
-    assert nodes.take().bound == 7
+    assert nodes.bound == 5
+    assert nodes.take().bound == 9
+    nodes.done()
+    nodes.prune(lambda part: part.bound == 5)
+    assert [part.bound for part in nodes] == [7]

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.search.branch_and_bound import divide_next
 from ratt_opt.search.open_nodes import OpenNodes
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.budget import Budget
+    from ratt_opt.budget import Budget, Stop
     from ratt_opt.curvatures.params import SeparableParams
     from ratt_opt.setfunctions.criterion_parts import OtherElements
     from ratt_opt.setfunctions.information import InformationObjective
@@ -104,7 +105,7 @@ class ContextSearch:
         count = len(others.first)
         share = 1.0 / np.bincount(others.owners, minlength=count)[others.owners]
         root = _ContextNode(0.0, 0, np.ones(len(share), dtype=np.bool_), np.ones(count, dtype=np.bool_), share, 0)
-        if count and self._bound(root, params.first_steps):
+        if count and self._raise_bound(root, params.first_steps):
             self._open = OpenNodes([root])
         self.attained.descend(budget)
 
@@ -120,15 +121,23 @@ class ContextSearch:
 
     def refine(self) -> None:
         """Look at the weakest open part again, or split it; an interrupt leaves the parts as they were."""
-        node = self._open.take()
-        if node.serial == 0 and node.steps < self._params.more_steps:
-            kept = [node] if self._bound(node, self._params.more_steps) else []
-        else:
-            kept = [child for child in self._children(node) if self._bound(child, self._params.child_steps)]
-        self._open.keep(kept)
-        self._open.done()
+        divide_next(self._open, self)
 
-    def _bound(self, node: _ContextNode, steps: int) -> bool:
+    def stop(self) -> Stop | None:
+        """Return why to stop; searches of other elements take turns with it."""
+        return self._budget.stop()
+
+    def bound(self, node: _ContextNode) -> _ContextNode | None:
+        """Return the node: children are bounded as they are made, as some need none of their own."""
+        return node
+
+    def branch(self, node: _ContextNode) -> list[_ContextNode]:
+        """Return the children that may hold a smaller marginal; the root again, with a better bound, the first time."""
+        if node.serial == 0 and node.steps < self._params.more_steps:
+            return [node] if self._raise_bound(node, self._params.more_steps) else []
+        return [child for child in self._children(node) if self._raise_bound(child, self._params.child_steps)]
+
+    def _raise_bound(self, node: _ContextNode, steps: int) -> bool:
         """Raise a part's bound by more tangents; whether it may still hold a smaller marginal."""
         self.nodes += 1
         others = self._others
