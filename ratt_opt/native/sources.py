@@ -13,7 +13,7 @@ RECORD = FOLDER / "loops.sha256"
 """Size and hash of the library as it was built, written beside it."""
 
 COMPILED = """
-    annealing column_annealing contexts cover cover_attacks cover_dive cut_annealing cut_states disjoint dominance
+    annealing column_annealing contexts cover cover_attacks cover_dive cut_annealing cut_states disjoint
     elements exchanges flow greedy group_tree groups keeping kept_links lattice levels marginal_dive needs outputs
     polytopes pricing sets_of_size target_sets team thresholds
 """

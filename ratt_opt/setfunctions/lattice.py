@@ -1,10 +1,11 @@
 """Passes over a table of all subsets, in C (``native/src/lattice.c``), in parts of some milliseconds.
 
-Every pass reads the table in its own order and makes no copy of it.
+Every pass reads the table in its own order; second differences are first ones of a table of half the size.
 """
 
 from __future__ import annotations
 
+from ctypes import byref, c_double
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -29,12 +30,8 @@ __all__ = [
     "smallest_gain_ratio",
 ]
 
-BLOCK_BITS = 13
-"""Elements below this are in one block of ``near_differences``."""
 SETS = 1 << 20
 """Sets of one element that a call takes: about a millisecond."""
-NEAR_SETS = 1 << 17
-"""Sets that a call takes if each is compared for up to 13 elements."""
 PAIRS = 1 << 22
 """Pairs of sets that a call takes: some milliseconds."""
 
@@ -50,13 +47,16 @@ def marginal_ends(values: FloatArray, n: int) -> FloatArray:
 
     Raises ``InputError`` : ``values`` is no contiguous array of 2**n floats.
     """
-    table, ends = address(checked("values", values, np.float64, (1 << n,))), np.empty((2, n))
-    ends[0], ends[1] = np.inf, -np.inf
-    low, high = address(ends[0]), address(ends[1])
-    for i in range(n):
-        for first, last in _parts(1 << (n - 1), SETS):
-            loops.marginal_ends(table, i, first, last, low + i * ends.itemsize, high + i * ends.itemsize)
-    return ends
+    checked("values", values, np.float64, (1 << n,))
+    return np.array([_ends_by(values, i) for i in range(n)]).reshape(n, 2).T
+
+
+def _ends_by(values: FloatArray, i: int) -> tuple[float, float]:
+    """Smallest and largest ``f(S + i) - f(S)``."""
+    low, high = c_double(np.inf), c_double(-np.inf)
+    for first, last in _parts(len(values) // 2, SETS):
+        loops.marginal_ends(address(values), i, first, last, byref(low), byref(high))
+    return low.value, high.value
 
 
 def second_differences(values: FloatArray, n: int, budget: Budget) -> FloatArray:
@@ -64,17 +64,14 @@ def second_differences(values: FloatArray, n: int, budget: Budget) -> FloatArray
 
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of 2**n floats.
     """
-    table, ends = address(checked("values", values, np.float64, (1 << n,))), np.zeros((n, n))
+    checked("values", values, np.float64, (1 << n,))
+    ends = np.zeros((n, n))
     for j in range(1, n):
-        by = np.full(j, np.inf)
-        for first, last in _parts(1 << (n - 1), NEAR_SETS):
+        by_j = values.reshape(-1, 2, 1 << j)
+        falls = np.subtract(by_j[:, 0], by_j[:, 1]).ravel()
+        for i in range(j):
             budget.check()
-            loops.near_differences(table, j, first, last, address(by))
-        for i in range(BLOCK_BITS, j):
-            for first, last in _parts(1 << (n - 2), SETS):
-                budget.check()
-                by[i] = loops.far_differences(table, i, j, first, last, by[i])
-        ends[:j, j] = by
+            ends[i, j] = _ends_by(falls, i)[0]
     return ends
 
 

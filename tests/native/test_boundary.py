@@ -32,7 +32,7 @@ CHANGES = {
     "two arguments change places": ("groups", "int64_t gap, int64_t room", "int64_t room, int64_t gap"),
     "an argument gets another type": ("team", "int64_t count, int robot", "int64_t count, int64_t robot"),
     "a result gets another type": ("groups", "EXPORTED int next_cover", "EXPORTED int64_t next_cover"),
-    "a record becomes an array": ("sets_of_size", "int64_t pairs, Scan *scan);", "int64_t pairs, Scan scan[]);"),
+    "a record becomes an array": ("sets_of_size", "int64_t pairs, Scan *scan,", "int64_t pairs, Scan scan[],"),
 }
 
 

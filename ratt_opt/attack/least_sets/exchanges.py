@@ -7,7 +7,8 @@ takes in plain NumPy.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from ctypes import byref, c_double
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,18 +20,34 @@ from ratt_opt.setfunctions.information import from_triangles, triangles
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.attack.team import Team
 
-__all__ = ["descended", "exchanged", "new_scan", "weak_sets_of_size"]
+__all__ = ["descended", "exchange_groups", "exchanged", "weak_sets_of_size"]
 
-BARRED, INSIDE, OUTSIDE = 0, 1, 2
-"""State of a robot; a barred one takes part in no exchange."""
+BARRED, OUTSIDE, INSIDE = -1, 0, 1
+"""Group of a robot beside one set; a barred one enters no group."""
 
 
-def new_scan() -> ScanRecord:
-    """Return a scan that has tried no exchange."""
-    return ScanRecord(next=0, leaves=-1, enters=-1, lowest=np.inf)
+def exchange_groups(  # noqa: PLR0917
+    team: Team, count: int, home: IntArray, must: BoolArray, budget: Budget, share: float = 0.0
+) -> float:
+    """Exchange robots of the best group for others as long as that weakens it, or time is left; its value.
+
+    ``home`` : (N,) group of each robot, 1 to ``count``, or none; changed in place
+    ``must`` : (N,) robots that stay in some group
+    ``share`` : weight of the sum of two groups' values beside the largest value
+    """
+    home = checked("home", home, np.int64, (team.robots,))
+    held = address(checked("must", must, np.bool_, (team.robots,)))
+    scan, value, finished = ScanRecord(next=0, leaves=-1, enters=-1, lowest=np.inf), c_double(np.inf), 0
+    while not finished:
+        with team.pace.timed(pairs := team.pace.units):
+            finished = loops.exchange_groups(team.record, count, address(home), held, share, pairs, scan, byref(value))
+        if finished < 0:
+            raise MemoryError
+        finished = finished or budget.is_over
+    return value.value
 
 
 def exchanged(
@@ -47,13 +64,12 @@ def exchanged(
     ``budget`` : once it is spent the set is left as it is
     """
     start, fixed = frozenset(start), frozenset(fixed)
-    where = np.full(team.robots, OUTSIDE if among is None else BARRED, dtype=np.int8)
+    where = np.full(team.robots, OUTSIDE if among is None else BARRED, dtype=np.int64)
     where[list(among or ())] = OUTSIDE
-    where[list(start)] = INSIDE
     where[list(fixed)] = BARRED
-    kept = fixed & start
-    _settle(team, team.sums(kept), where, budget or Budget())
-    return kept.union(np.flatnonzero(where == INSIDE).tolist())
+    where[list(start)] = INSIDE
+    exchange_groups(team, 1, where, np.isin(np.arange(team.robots), list(fixed)), budget or Budget())
+    return frozenset(np.flatnonzero(where == INSIDE).tolist())
 
 
 def weak_sets_of_size(team: Team, size: int, budget: Budget | None = None) -> list[frozenset[int]]:
@@ -71,10 +87,7 @@ def weak_sets_of_size(team: Team, size: int, budget: Budget | None = None) -> li
         _starts(team, size),
         strict=False,
     ):
-        where = np.full(n_robots, OUTSIDE, dtype=np.int8)
-        where[start] = INSIDE
-        _settle(team, team.prior, where, own)
-        robots = frozenset(np.flatnonzero(where == INSIDE).tolist())
+        robots = exchanged(team, start.tolist(), budget=own)
         if robots not in found:
             found[robots] = team.value(robots)
         if own.is_over:
@@ -91,19 +104,6 @@ def _starts(team: Team, size: int) -> Iterator[IntArray]:
         yield np.argsort(traces[:, j], kind="stable")[:size]
     for _ in range(team.params.set_exchanges.random_starts):
         yield rng.permutation(len(traces))[:size]
-
-
-def _settle(team: Team, kept: FloatArray, where: Any, budget: Budget) -> None:
-    """Exchange until nothing is lowered, or time is up; ``where`` (N,) is changed in place."""
-    sums, scan = checked("kept", np.ascontiguousarray(kept), np.float64, team.prior.shape), new_scan()
-    finished = 0
-    while not finished:
-        with team.pace.timed(pairs := team.pace.units):
-            finished = loops.exchange_robots(team.record, address(sums), address(where), pairs, scan)
-        if finished < 0:
-            raise MemoryError
-        if budget.is_over:
-            return
 
 
 def descended(team: Team, start: IntArray) -> IntArray:

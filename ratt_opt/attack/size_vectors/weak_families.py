@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from ctypes import byref, c_double
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.attack.least_sets.exchanges import descended, new_scan, weak_sets_of_size
-from ratt_opt.native.library import address
-from ratt_opt.native.loops import loops
+from ratt_opt.attack.least_sets.exchanges import descended, exchange_groups, weak_sets_of_size
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -157,15 +154,7 @@ class GroupExchanges:
         return tuple(frozenset(np.flatnonzero(self._home == g).tolist()) for g in range(1, len(self.sizes) + 1))
 
     def _improve(self, home: IntArray, budget: Budget) -> None:
-        team, sizes, must = self._team, len(self.sizes), np.ascontiguousarray(self._must, dtype=np.bool_)
-        home, value, scan = np.ascontiguousarray(home, dtype=np.int64), c_double(np.inf), new_scan()
-        places, finished = (address(home), address(must)), 0
-        share = team.params.family_exchanges.both
-        while not finished:
-            with team.pace.timed(pairs := team.pace.units):
-                finished = loops.exchange_groups(team.record, sizes, *places, share, pairs, scan, byref(value))
-            if finished < 0:
-                raise MemoryError
-            finished = finished or budget.is_over
-        if value.value < self.value:
-            self.value, self._home = value.value, home
+        share = self._team.params.family_exchanges.both
+        value = exchange_groups(self._team, len(self.sizes), home, self._must, budget, share)
+        if value < self.value:
+            self.value, self._home = value, home

@@ -13,13 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked
-from ratt_opt.native.loops import loops
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
 __all__ = ["undominated"]
 
@@ -27,6 +24,8 @@ ROUNDINGS = 1e-15
 """More than eight roundings: two differences and a product on either side, and the comparison's own."""
 SMALLEST = 1e-290
 """Products below this lose digits (they are subnormal, or nearly)."""
+FIRST = 4
+"""Rows whose diagonals are compared first: they refute most pairs."""
 NO, OPEN, YES = range(3)
 
 
@@ -66,10 +65,25 @@ def undominated(information: FloatArray, owner: IntArray) -> tuple[IntArray, dic
 
 def _compared(entries: FloatArray) -> NDArray[np.int8]:
     """(K, K) whether the first of a pair dominates the second, as far as floats tell; of equal ones the first does."""
-    count, rows = entries.shape[:2]
-    found = np.zeros((count, count), np.int8)
-    given = checked("entries", np.ascontiguousarray(entries), np.float64, (count, rows, 3))
-    loops.compare_elements(address(given), count, rows, ROUNDINGS, SMALLEST, address(found))
+    found = np.full((len(entries),) * 2, NO, dtype=np.int8)
+    diagonals = entries[:, :FIRST, ::2]
+    for f in range(len(entries)):
+        some = np.flatnonzero((diagonals[f] >= diagonals).all(axis=(1, 2)))
+        some = some[some != f]
+        found[f, some] = _compared_with(entries[f], entries[some], some < f)
+    return found
+
+
+def _compared_with(more: FloatArray, less: FloatArray, comes_first: BoolArray) -> NDArray[np.int64]:
+    """(L,) the same of one element, (rows, 3), and others, (L, rows, 3)."""
+    a, b, c = np.moveaxis(more - less, -1, 0)
+    product, square = a * c, b * b
+    is_large = square > SMALLEST
+    is_refuted = (a < 0) | (c < 0) | ((product < square * (1 - ROUNDINGS)) & is_large)
+    is_open = (b != 0) & ~((product > square * (1 + ROUNDINGS)) & is_large)
+    is_same = (more == less).all(axis=(1, 2))
+    found = np.where(is_open.any(axis=1), OPEN, YES)
+    found[is_refuted.any(axis=1) | (is_same & comes_first)] = NO
     return found
 
 

@@ -12,8 +12,8 @@ static void start_scan(Scan *scan) { *scan = (Scan){0, -1, -1, INFINITY}; }
 
 typedef struct {
     const Team *team;
-    int64_t *home;              /* (robots) group of each, 0 for those that are blinded */
-    const uint8_t *must;        /* (robots) whether it cannot be blinded */
+    int64_t *home;              /* (robots) group of each, 0 for those in none, -1 for those that stay so */
+    const uint8_t *must;        /* (robots) whether it stays in some group */
     int groups;
     double *sums, *values, *one;
 } Family;
@@ -50,7 +50,7 @@ static int scan_groups(const Family *f, int64_t top, double share, Scan *scan, i
         if (*pairs <= 0) return UNFINISHED;
         *pairs -= f->team->robots;
         for (int64_t e = 0; e < f->team->robots; e++) {
-            if (f->home[e] == top || (f->home[e] == 0 && f->must[i])) continue;
+            if (f->home[e] == top || f->home[e] < 0 || (f->home[e] == 0 && f->must[i])) continue;
             double mine = exchanged(f, top, i, e);
             if (mine >= goal) continue;
             double other = f->home[e] > 0 ? exchanged(f, f->home[e], e, i) : -INFINITY;
@@ -93,64 +93,5 @@ int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *
         if (finished) break;
     }
     free(memory);
-    return finished;
-}
-
-enum { BARRED, INSIDE, OUTSIDE };
-
-typedef struct {
-    const Team *team;
-    const double *kept;         /* (targets, entries) information without the robots inside */
-    int8_t *where;              /* (robots) */
-    double *sums, *changed, value;
-} OneSet;
-
-/* As `value_group`. */
-static void value_set(OneSet *set) {
-    memcpy(set->sums, set->kept, (size_t)set->team->targets * entries_of(set->team) * sizeof(double));
-    for (int64_t i = 0; i < set->team->robots; i++)
-        if (set->where[i] == INSIDE) add_information(set->team, set->sums, 1.0, i, set->sums);
-    set->value = value_of(set->team, set->sums);
-}
-
-/* Look for the exchange that lowers the value most, as far as `pairs` last. */
-static int scan_robots(const OneSet *set, Scan *scan, int64_t *pairs) {
-    if (isinf(scan->lowest)) scan->lowest = set->value - least_improvement(set->team, set->value);
-    for (; scan->next < set->team->robots; scan->next++) {
-        if (set->where[scan->next] != INSIDE) continue;
-        if (*pairs <= 0) return UNFINISHED;
-        *pairs -= set->team->robots;
-        for (int64_t e = 0; e < set->team->robots; e++) {
-            if (set->where[e] != OUTSIDE) continue;
-            add_information(set->team, set->sums, -1.0, scan->next, set->changed);
-            add_information(set->team, set->changed, 1.0, e, set->changed);
-            double other = value_of(set->team, set->changed);
-            if (other < scan->lowest) scan->lowest = other, scan->leaves = scan->next, scan->enters = e;
-        }
-    }
-    return FINISHED;
-}
-
-/* As `exchange_found`. */
-static int exchange_in_set(OneSet *set, const Scan *scan) {
-    double before = set->value;
-    set->where[scan->leaves] = OUTSIDE, set->where[scan->enters] = INSIDE;
-    value_set(set);
-    if (set->value < before) return 1;
-    set->where[scan->leaves] = INSIDE, set->where[scan->enters] = OUTSIDE;
-    return 0;
-}
-
-int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t pairs, Scan *scan) {
-    int width = team->targets * entries_of(team), finished = UNFINISHED;
-    double *sums = malloc(2 * (size_t)width * sizeof(double));
-    if (!sums) return -1;
-    OneSet set = {team, kept, where, sums, sums + width, 0.0};
-    value_set(&set);
-    while (!finished && scan_robots(&set, scan, &pairs) == FINISHED) {
-        finished = scan->leaves < 0 || !exchange_in_set(&set, scan);
-        start_scan(scan);
-    }
-    free(sums);
     return finished;
 }

@@ -5,9 +5,7 @@
 
 #include "lattice.h"
 
-enum { LANES = 32 };      /* ends side by side: one alone would wait for the one before, and is no vector instruction */
-enum { BLOCK = 1 << 13 }; /* differences at once: 64 KiB, which stay in a core's own cache for all elements */
-enum { FEW = 1 << 10 };   /* the same if only one element looks at them */
+enum { LANES = 32 }; /* ends side by side: one alone would wait for the one before, and is no vector instruction */
 
 static inline double lesser(double a, double b) { return a < b ? a : b; }
 
@@ -62,68 +60,6 @@ void marginal_ends(const double *values, int i, int64_t first, int64_t last, dou
         spread_of_far(values + without(first, i), run, step, low, high);
         first += run;
     }
-}
-
-/* The smallest of above[s] - below[s]; `count` is a multiple of LANES. */
-static double smallest_difference(const double *above, const double *below, int64_t count, double known) {
-    double least[LANES];
-    for (int k = 0; k < LANES; k++) least[k] = known;
-    for (int64_t s = 0; s < count; s += LANES)
-        for (int k = 0; k < LANES; k++) least[k] = lesser(above[s + k] - below[s + k], least[k]);
-    for (int k = 0; k < LANES; k++) known = lesser(least[k], known);
-    return known;
-}
-
-/* falls (size) = f(S) - f(S + j) of the sets without j from number `first` on. */
-static void fill_falls(const double *values, int j, int64_t first, int64_t size, double *falls) {
-    int64_t step = (int64_t)1 << j;
-    for (int64_t done = 0; done < size;) {
-        int64_t k = first + done, run = step - (k & (step - 1));
-        if (run > size - done) run = size - done;
-        const double *without_j = values + without(k, j), *with_j = without_j + step;
-        for (int64_t s = 0; s < run; s++) falls[done + s] = without_j[s] - with_j[s];
-        done += run;
-    }
-}
-
-/* The smallest falls[s + step] - falls[s] over s below `size` without the bit `step`. */
-static double smallest_rise(const double *falls, int64_t size, int64_t step) {
-    double low = INFINITY;
-    if (step >= LANES) {
-        for (int64_t base = 0; base < size; base += 2 * step) low = smallest_difference(falls + base + step, falls + base, step, low);
-    } else if (size >= LANES) {
-        /* All places side by side, and LANES more at the end; those with the bit mean nothing, and are left out. */
-        double least[LANES];
-        for (int k = 0; k < LANES; k++) least[k] = INFINITY;
-        for (int64_t s = 0; s < size; s += LANES)
-            for (int k = 0; k < LANES; k++) least[k] = lesser(falls[s + step + k] - falls[s + k], least[k]);
-        for (int k = 0; k < LANES; k++)
-            if (!(k & step)) low = lesser(least[k], low);
-    } else {
-        for (int64_t s = 0; s < size; s++)
-            if (!(s & step)) low = lesser(falls[s + step] - falls[s], low);
-    }
-    return low;
-}
-
-void near_differences(const double *values, int j, int64_t first, int64_t last, double *ends) {
-    double falls[BLOCK + LANES] = {0};
-    for (; first < last; first += BLOCK) {
-        int64_t size = last - first < BLOCK ? last - first : BLOCK;
-        fill_falls(values, j, first, size, falls);
-        for (int i = 0; i < j && (int64_t)1 << i < size; i++) ends[i] = lesser(smallest_rise(falls, size, (int64_t)1 << i), ends[i]);
-    }
-}
-
-double far_differences(const double *values, int i, int j, int64_t first, int64_t last, double known) {
-    double low[FEW], high[FEW];
-    for (; first < last; first += FEW) {
-        const double *neither = values + without(without(first, i), j), *lower = neither + ((int64_t)1 << i);
-        for (int64_t s = 0; s < FEW; s++)
-            low[s] = neither[s] - neither[s + ((int64_t)1 << j)], high[s] = lower[s] - lower[s + ((int64_t)1 << j)];
-        known = smallest_difference(high, low, FEW, known);
-    }
-    return known;
 }
 
 void disjoint_slack(const double *values, int64_t first, int64_t last, double *slack, int64_t *sets) {

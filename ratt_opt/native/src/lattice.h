@@ -5,12 +5,6 @@
 /* Lower *low and raise *high to f(S + i) - f(S) over the sets without i of numbers first..last - 1, which are multiples of
    LANES or those of all sets. */
 EXPORTED void marginal_ends(const double *values, int i, int64_t first, int64_t last, double *low, double *high);
-/* Lower ends (j) to f(S + i) + f(S + j) - f(S + i + j) - f(S) by each i below j and below 13, over the sets without j of
-   numbers first..last - 1: whole blocks, or all sets if these are fewer. */
-EXPORTED void near_differences(const double *values, int j, int64_t first, int64_t last, double *ends);
-/* The least of `known` and the same by i, no less than 13, and j, over the sets without both of numbers first..last - 1:
-   whole blocks. */
-EXPORTED double far_differences(const double *values, int i, int j, int64_t first, int64_t last, double known);
 /* Lower *slack to f(A) + f(B) - f(A + B) of disjoint A, B whose unions are first..last - 1; `sets`: those A and B. */
 EXPORTED void disjoint_slack(const double *values, int64_t first, int64_t last, double *slack, int64_t *sets);
 /* Lower *slack to f(A) + f(B) - f(A | B) of A in first..last - 1 and any B from A on, of `count` sets. */

@@ -31,23 +31,7 @@ FOR_DIMENSION double product(int64_t d, const double *first, const double *secon
     return total;
 }
 
-/* With L = G G': the sum of squares of G^-1 C'. */
-FOR_DIMENSION void traces_of(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output,
-                             double *spare, double *traces) {
-    double *factor = spare, *solved = spare + d * d;
-    for (int64_t k = 0; k < count * targets; k++) {
-        const double *rows = output + k % targets * q * d;
-        double total = 0.0;
-        factorise(d, matrices + k * d * d, factor);
-        for (int64_t row = 0; row < q; row++) {
-            solve(d, factor, rows + row * d, solved);
-            for (int64_t a = 0; a < d; a++) total += solved[a] * solved[a];
-        }
-        traces[k] = total;
-    }
-}
-
-/* The inner products of the columns of G^-1 C'. */
+/* With L = G G': the inner products of the columns of G^-1 C'. */
 FOR_DIMENSION void covariances_of(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output,
                                   double *spare, double *covariances) {
     double *factor = spare, *solved = spare + d * d;
@@ -61,14 +45,6 @@ FOR_DIMENSION void covariances_of(int64_t count, int64_t targets, int64_t q, int
                 found[row * q + other] = found[other * q + row] = product(d, solved + row * d, solved + other * d);
         }
     }
-}
-
-void output_traces(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output, double *spare,
-                   double *traces) {
-    if (d == 2) traces_of(count, targets, q, 2, matrices, output, spare, traces);
-    else if (d == 4) traces_of(count, targets, q, 4, matrices, output, spare, traces);
-    else if (d == 6) traces_of(count, targets, q, 6, matrices, output, spare, traces);
-    else traces_of(count, targets, q, d, matrices, output, spare, traces);
 }
 
 void output_covariances(int64_t count, int64_t targets, int64_t q, int64_t d, const double *matrices, const double *output, double *spare,

@@ -1,4 +1,4 @@
-/* Planar targets: gains of the greedy algorithm, contexts of an element, dominated elements. */
+/* Planar targets: gains of the greedy algorithm, contexts of an element. */
 #pragma once
 #include "team.h"
 
@@ -39,5 +39,3 @@ EXPORTED void descend_pairs(Descent *d, int64_t i);
    its absolute value; levels (count, options), slopes (count), own (options, width); `best` (width) is spare. */
 EXPORTED void sum_ceilings(int64_t count, int64_t options, int64_t width, const int64_t *owners, const double *levels, const double *slopes,
                            const double *own, double *best, double *sums, double *sizes);
-/* found (count, count): whether the first of a pair dominates the second; of equal ones the first does. */
-EXPORTED void compare_elements(const double *entries, int64_t count, int64_t rows, double roundings, double smallest, int8_t *found);

@@ -60,15 +60,12 @@ EXPORTED int list_sets_below(SetSearch *s, int64_t nodes, int64_t room, uint8_t 
                              int64_t *progress);
 /* A value that no set which is still open is below, unless it is at least the threshold. */
 EXPORTED double least_open(const SetSearch *s);
-/* Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens. *value: of
-   the best group; returns 1 at the end, 0 after about so many `pairs` (the next call with the same `scan` goes on there),
-   -1 where memory is short. */
+/* Exchange a robot of the best group for one elsewhere, the best pair each time, while the best group weakens. `home`
+   (robots): group of each from 1 on, 0 in none, -1 if it stays so; `must` (robots): it stays in some group. *value: of the
+   best group; returns 1 at the end, 0 after about so many `pairs` (the next call with the same `scan` goes on there), -1
+   where memory is short. */
 EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const uint8_t *must, double share, int64_t pairs, Scan *scan,
                              double *value);
-/* Exchange one robot inside for one outside, the best pair each time, while that lowers the value of the set. `kept`
-   (targets, entries): information without the robots inside; `where` (robots) is changed in place. Returns 1 at the end, 0
-   after about so many `pairs` (the next call with the same `scan` goes on there), -1 where memory is short. */
-EXPORTED int exchange_robots(const Team *team, const double *kept, int8_t *where, int64_t pairs, Scan *scan);
 /* Go on until all is decided (1), or so many sets were looked at (0). The threshold falls to the value of what is found. */
 EXPORTED int search_disjoint(DisjointSets *d, int64_t work);
 /* The sum of the amounts (robots) of the robots in each set. */

@@ -11,8 +11,6 @@ from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ratt_opt._validation import FloatArray
 
 __all__ = ["output_covariances", "output_traces"]
@@ -23,24 +21,22 @@ AT_ONCE = 4_000_000
 
 def output_traces(matrices: FloatArray, output: FloatArray) -> FloatArray:
     """``tr(C_j L_j^{-1} C_j')`` of (..., M, d, d) positive definite matrices and outputs (M, q, d): (..., M)."""
-    return _of_each(loops.output_traces, matrices, output, ())
+    return np.asarray(np.einsum("...aa->...", output_covariances(matrices, output)))
 
 
 def output_covariances(matrices: FloatArray, output: FloatArray) -> FloatArray:
-    """``C_j L_j^{-1} C_j'`` likewise: (..., M, q, q)."""
-    return _of_each(loops.output_covariances, matrices, output, (output.shape[-2],) * 2)
+    """``C_j L_j^{-1} C_j'`` likewise: (..., M, q, q).
 
-
-def _of_each(call: Callable[..., None], matrices: FloatArray, output: FloatArray, shape: tuple[int, ...]) -> FloatArray:
-    """Call the compiled code. Raises ``InputError`` : shapes of matrices and outputs differ, or a type is another."""
+    Raises ``InputError`` : shapes of matrices and outputs differ, or a type is another.
+    """
     targets, q, d = output.shape
     flat = np.ascontiguousarray(matrices).reshape(prod(matrices.shape[:-3]), *matrices.shape[-3:])
     checked("matrices", flat, np.float64, (len(flat), targets, d, d))
     own = checked("output", np.ascontiguousarray(output), np.float64, (targets, q, d))
-    found, spare = np.empty((len(flat), targets, *shape)), np.empty((d + q, d))
+    found, spare = np.empty((len(flat), targets, q, q)), np.empty((d + q, d))
     given, where, others = address(flat), address(found), (address(own), address(spare))
     step = max(AT_ONCE // max(targets * d**3, 1), 1)
     for first in range(0, len(flat), step):
         some, to = given + first * flat.strides[0], where + first * found.strides[0]
-        call(min(step, len(flat) - first), targets, q, d, some, *others, to)
-    return found.reshape(*matrices.shape[:-2], *shape)
+        loops.output_covariances(min(step, len(flat) - first), targets, q, d, some, *others, to)
+    return found.reshape(*matrices.shape[:-2], q, q)

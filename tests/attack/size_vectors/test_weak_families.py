@@ -10,6 +10,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt import AttackParams
 from ratt_opt.attack import team as team_module
+from ratt_opt.attack.least_sets import exchanges
 from ratt_opt.attack.params import FamilyExchangeParams
 from ratt_opt.attack.size_vectors import weak_families
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
@@ -37,7 +38,7 @@ def test_large_teams_start_from_where_linear_descent_ends(name, monkeypatch):
 
 
 def test_exchanges_that_do_not_end_leave_time_for_bounds(monkeypatch):
-    monkeypatch.setattr(weak_families, "loops", SimpleNamespace(exchange_groups=lambda *_: 0))
+    monkeypatch.setattr(exchanges, "loops", SimpleNamespace(exchange_groups=lambda *_: 0))
     problem = ro.random_scenario(40, 4, alpha_s=4, alpha_c=40, seed=1).problem("logdet")
     values = PlanValues(problem, ro.ratt(problem).elements)
     team = Team.of(problem.objective, values.plan)
