@@ -34,11 +34,13 @@ def bounds() -> None:
         when = _sentence(stage.applies)
         if hasattr(stage, "fits"):
             when += "; " + _sentence(stage.fits).removeprefix("Tell whether ")
-        print("| " + " | ".join([stage.name, done, when, stage.kind]) + " |")
+        print("| " + " | ".join([stage.name, done, when, stage.kind or stage.name]) + " |")
 
 
 def main() -> None:
     """Print one table."""
+    if sys.argv[1:] not in ([name] for name in (*TABLES, "bounds")):
+        sys.exit(__doc__)
     if sys.argv[1] == "bounds":
         bounds()
         return

@@ -54,7 +54,10 @@ class FileFormatError(InputError):
 
 
 class ProofError(Exception):
-    """A certificate does not prove its claim; the text names the first fault.
+    """A certificate, or a bound of a search, does not prove its claim; the text names the first fault.
+
+    A search raises it if an end of its bracket excludes the other one, which neither limits nor interrupts cause: then
+    a bound is false, or a set function is not what it says.
 
     ``report`` : what ``ratt_opt.bound`` had found when its own proof failed, a ``BoundReport``; otherwise ``None``.
     """

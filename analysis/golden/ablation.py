@@ -4,7 +4,7 @@ Run as ``python -m analysis.golden.ablation [--seconds 4] [--cases 16] [--only N
 [--folder build/ablation]``. From networks, complete graphs and best plans that many cases each are taken that took
 long, evenly over their names; each is asked with everything, and without each part, for that many seconds of the
 processor. Printed in Markdown: rows closed with everything and without, lost and gained, geometric means of gaps and
-seconds, without over with. Rows are appended as they end: run it again to go on.
+seconds, without over with. Rows are appended as they end, a file for each ``--seconds``: run it again to go on.
 ``--twice`` measures a second time.
 """
 
@@ -68,8 +68,11 @@ def main() -> int:
     recorded = read_rows(Path("tests/golden"), ["networks", "complete", "plans"])
     attacks = chosen(["networks", "complete"], options.cases, recorded)
     plans = chosen(["plans"], options.cases, recorded)
-    wanted = [EVERYTHING, *(options.only or [*ATTACK_SWITCHES, *PLAN_SWITCHES])]
-    path = options.folder / "ablation.csv"
+    names = [*ATTACK_SWITCHES, *PLAN_SWITCHES]
+    if unknown := set(options.only or []) - set(names):
+        parser.error(f"--only must be of {', '.join(names)}; got {', '.join(sorted(unknown))}")
+    wanted = [EVERYTHING, *(options.only or names)]
+    path = options.folder / f"ablation_{options.seconds:g}.csv"
     there = {
         (row["without"], row["part"], row["case"], int(row["turn"]))
         for row in (read_csv(path) if path.exists() else [])

@@ -18,6 +18,7 @@ from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.params import DivisionParams, LevelParams
 from ratt_opt.solvers.maxmin.restarts import RestartedSearch
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
+from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ATTACK_SWITCHES", "PLAN_SWITCHES", "without"]
 
-NEEDED = {"thresholds", "nobody left", "single robots", "size vectors"}
+NEEDED = {"concave trees", "thresholds", "nobody left", "single robots", "size vectors"}
 """Stages without which nothing is left to compare."""
 Patches = tuple[tuple[Any, str, Any], ...]
 
@@ -54,8 +55,7 @@ BOUNDS: dict[str, Patches] = {
 }
 """Patches that switch off one part of the attack each."""
 PLAN_SWITCHES: dict[str, Patches] = {
-    "covers": (),
-    "marginal gains": (),
+    **{stage.name: () for stage in BOUND_STAGES if stage.name not in NEEDED},
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
@@ -71,7 +71,7 @@ ATTACK_SWITCHES = [*STAGE_NAMES, *BOUNDS]
 
 @contextmanager
 def without(name: str) -> Iterator[None]:
-    """Leave one part out; a name that is none's leaves out nothing."""
+    """Leave one part out; any other name leaves out nothing."""
     with ExitStack() as stack:
         stack.enter_context(without_stages(name))
         for owner, attribute, value in (BOUNDS | PLAN_SWITCHES).get(name, ()):

@@ -138,6 +138,8 @@ def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: 
     except KeyboardInterrupt:
         stop = own.interrupt()
     bracket = memory.bracket or _unattacked(problem, values.plan)
+    if not is_metered:  # other functions may fall, unless they are said not to
+        bracket.check(bracket.lower)
     if memory.bracket is not None and bracket.is_closed and stop in UNDONE:
         stop = Stop.CLOSED  # by what was known before the budget ended
     return AttackResult(

@@ -14,7 +14,7 @@ from ratt_opt._values import ReprMixin, counted, plain
 from ratt_opt.attack import params as parameters
 from ratt_opt.attack.params import AttackParams
 from ratt_opt.budget import Budget
-from ratt_opt.errors import InputError
+from ratt_opt.errors import InputError, ProofError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
 from ratt_opt.setfunctions.metered import metered
@@ -187,8 +187,20 @@ class AttackBracket:
             raise CutoffReached
 
     def raise_lower(self, bound: float) -> None:
-        """Keep a larger lower bound."""
+        """Keep a larger lower bound.
+
+        Raises ``ProofError`` : it is no number, or above what the attack in hand leaves by more than rounding.
+        """
+        self.check(float(bound))
         self.lower = max(self.lower, float(bound))
+
+    def check(self, lower: float) -> None:
+        """Raise ``ProofError`` if ``lower`` is above the upper end by more than rounding, or no number."""
+        if not lower <= self.upper + max(CLOSED_WIDTH * abs(self.upper), self.rounding):
+            raise ProofError(
+                f"no attack leaves less than {lower:.10g}, says a bound, but one leaves {self.upper:.10g}; "
+                "the bound is false, or the set function is not what it says"
+            )
 
 
 class Resumable(Protocol):

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from ratt_opt.budget import Budget, OutOfBudget, Stop
+from ratt_opt import Stop
+from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.search.branch_and_bound import divide_nodes
 from ratt_opt.search.open_nodes import OpenNodes
 

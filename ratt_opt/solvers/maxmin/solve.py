@@ -12,7 +12,7 @@ import numpy as np
 from ratt_opt._validation import readonly
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.preparation import prepared, restored
-from ratt_opt.errors import InputError
+from ratt_opt.errors import InputError, ProofError
 from ratt_opt.problem import Attack, Plan, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
@@ -200,13 +200,15 @@ def _result(
 ) -> MaxMinResult:
     proved = incumbent.proved
     lower = proved.lower
-    if search is not None and np.isfinite(search.upper):
-        upper, proof = search.upper, search.proof()
+    if search is not None and search.upper != np.inf:
+        stage, upper, proof = search.lowest, search.upper, search.proof()
     else:  # before any cut bounds all plans, monotonicity does
         known = monotone_bound(problem, Attack() if proved.worst_case is None else proved.worst_case.attack)
-        upper, proof = known.upper, known.proof
-    upper = max(upper, lower)
+        stage, upper, proof = "monotonicity", known.upper, known.proof
     rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
+    if not upper >= lower - ROUNDING * abs(lower) - rounding:
+        raise ProofError(f"{stage}: no plan is worth more than {upper:.10g}, but one is worth {lower:.10g} at least")
+    upper = max(upper, lower)
     if upper - lower <= ROUNDING * abs(lower) + rounding:
         stop = Stop.CLOSED
     elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING) + rounding:

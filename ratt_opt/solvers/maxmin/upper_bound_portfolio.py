@@ -30,15 +30,20 @@ __all__ = ["UpperBoundPortfolio"]
 
 @dataclass(slots=True)
 class _Part:
-    """A stage's search, its share, and the factor of a turn's nodes that it has now."""
+    """A stage's name, its search, its share, and the factor of a turn's nodes that it has now."""
 
+    name: str
     search: BoundSearch
     share: TurnShare
     factor: float
 
-    def note(self, *, lowered: bool) -> None:
-        """Change the factor by whether a turn lowered the upper end."""
-        self.factor = self.share.most if lowered else self.factor * self.share.in_vain
+    def run(self, turn: Turn) -> Stop:
+        """Give the search a turn, and change the factor by whether it lowered the upper end."""
+        stop = self.search.run(turn)
+        if not isinstance(stop, Stop):
+            raise TypeError(f"a turn of the stage {self.name!r} must return a Stop, such as Stop.NODES; got {stop!r}")
+        self.factor = self.share.most if self.search.upper < turn.upper else self.factor * self.share.in_vain
+        return stop
 
 
 class UpperBoundPortfolio:
@@ -49,10 +54,11 @@ class UpperBoundPortfolio:
         self._parts: list[_Part] = []
         kinds: set[str] = set()
         for stage in schedule.BOUND_STAGES if stages is None else stages:
-            if stage.name not in LEFT_OUT and stage.kind not in kinds and stage.applies(known):
+            kind = stage.kind or stage.name
+            if stage.name not in LEFT_OUT and kind not in kinds and stage.applies(known):
                 share = stage.share(known)
-                self._parts.append(_Part(stage.begin(known), share, share.first))
-                kinds.add(stage.kind)
+                self._parts.append(_Part(stage.name, stage.begin(known), share, share.first))
+                kinds.add(kind)
         self._slice, self._begun = float(self._params.slice), False
 
     @property
@@ -65,10 +71,18 @@ class UpperBoundPortfolio:
     def _before_spacing(self) -> float:
         return min((part.search.upper for part in self._parts), default=np.inf)
 
+    @property
+    def lowest(self) -> str:
+        """Name of the stage whose bound is :attr:`upper`."""
+        return self._lowest.name
+
+    @property
+    def _lowest(self) -> _Part:
+        return min(self._parts, key=lambda part: part.search.upper)
+
     def proof(self) -> UpperProof:
         """The proof of :attr:`upper`, together with the spacing of values."""
-        proof = min((part.search for part in self._parts), key=lambda search: search.upper).proof()
-        return replace(proof, spacing=self._known.rule.spacing)
+        return replace(self._lowest.search.proof(), spacing=self._known.rule.spacing)
 
     def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
@@ -76,7 +90,7 @@ class UpperBoundPortfolio:
             self._walk(slices)
         told = progress and (lambda nodes, lower, upper: progress(nodes, lower, min(upper, self.upper)))
         if len(self._parts) == 1:
-            stop = self._parts[0].search.run(Turn(slices=slices, progress=told, upper=np.inf, nodes=np.inf))
+            stop = self._parts[0].run(Turn(slices=slices, progress=told, upper=np.inf, nodes=np.inf))
             return Stop.HEURISTIC if stop is Stop.NODES and slices.budget.stop() is None else stop
         while True:
             before = slices.budget.nodes
@@ -85,8 +99,7 @@ class UpperBoundPortfolio:
                 nodes = max(int(part.factor * self._slice), 1)
                 if not self._begun and part.share.at_first is not None:
                     nodes = part.share.at_first
-                stop = part.search.run(Turn(slices=slices, progress=told, upper=upper, nodes=nodes))
-                part.note(lowered=part.search.upper < upper)
+                stop = part.run(Turn(slices=slices, progress=told, upper=upper, nodes=nodes))
                 if stop is not Stop.NODES or slices.budget.stop() is not None:
                     return stop
             if slices.budget.nodes == before:  # all that is left is what margins for rounding leave

@@ -54,3 +54,22 @@ def test_brackets_are_true_with_the_stage_and_results_tell_of_it(added):
         if added.name in rows:
             assert rows.index(added.name) == rows.index("single robots") + 1
     assert ran > 10
+
+
+@pytest.mark.parametrize("bound", [1e6, float("nan")])
+def test_a_bound_above_an_attack_ends_the_search(added, monkeypatch, bound):
+    monkeypatch.setattr(added, "run", lambda attack: attack.task.bracket.raise_lower(bound))
+    refused = 0
+    for seed in range(30):
+        rng = np.random.default_rng([seed, 12])
+        problem = random_problem(rng, int(rng.integers(3, 6)), kind="trace")
+        problem = replace(problem, protected_robots=frozenset({int(rng.integers(problem.n_robots))}))
+        plan = random_elements(rng, problem)
+        try:
+            found = ro.worst_case_attack(problem, plan, params=with_params(ro.AttackParams(), LARGE_TEAM))
+        except ro.ProofError as error:
+            assert "says a bound, but one leaves" in str(error)  # noqa: PT017  (only some attacks reach the stage)
+            refused += 1
+        else:
+            assert added.name not in [row.name for row in found.stages]
+    assert refused > 2

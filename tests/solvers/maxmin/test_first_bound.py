@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import re
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -86,6 +88,39 @@ def test_brackets_are_true_with_the_stage(
     first, *others = schedule.BOUND_STAGES
     monkeypatch.setattr(schedule, "BOUND_STAGES", (added,) if alone else (first, added, *others))
     check(turns_of(added), tmp_path, closes=not alone)
+
+
+@pytest.mark.parametrize("bound", [1e-3, -np.inf, np.nan])
+def test_a_bound_below_a_plan_ends_the_search_and_is_named(
+    added: Any, bound: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin = added.begin
+
+    def false(known: Any) -> Any:
+        return SimpleNamespace(upper=bound, proof=begin(known).proof, run=lambda _: ro.Stop.NODES)
+
+    monkeypatch.setattr(added, "begin", false)
+    monkeypatch.setattr(schedule, "BOUND_STAGES", (added,))
+    problem = replace(random_problem(np.random.default_rng(3), 4, kind="trace"), alpha_s=1, alpha_c=1)
+    with pytest.raises(
+        ro.ProofError, match=r"all elements: no plan is worth more than .*, but one is worth .* at least"
+    ):
+        ro.solve_maxmin(problem)
+
+
+def test_a_turn_that_says_nothing_names_its_stage(added: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    begin = added.begin
+
+    def silent(known: Any) -> Any:
+        search = begin(known)
+        search.run = lambda _: None
+        return search
+
+    monkeypatch.setattr(added, "begin", silent)
+    monkeypatch.setattr(schedule, "BOUND_STAGES", (added,))
+    problem = replace(random_problem(np.random.default_rng(3), 4, kind="trace"), alpha_s=1, alpha_c=1)
+    with pytest.raises(TypeError, match="a turn of the stage 'all elements' must return a Stop"):
+        ro.solve_maxmin(problem)
 
 
 def test_stages_have_names_of_their_own_and_say_when_they_apply() -> None:

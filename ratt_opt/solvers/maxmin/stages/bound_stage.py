@@ -47,11 +47,11 @@ class BoundSearch(Protocol):
 class BoundStage(ABC):
     """One row of the schedule; ``known`` : the problem (``known.task``), outcomes, the best plan, cuts.
 
-    ``kind`` : of the stages of one kind, only the first that applies runs
+    ``kind`` : of the stages of one kind, only the first that applies runs; its name if it is empty
     """
 
     name: ClassVar[str]
-    kind: ClassVar[str]
+    kind: ClassVar[str] = ""
 
     def applies(self, known: Known) -> bool:  # noqa: ARG002  (the shape of a condition)
         """Always."""
