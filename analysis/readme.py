@@ -28,7 +28,6 @@ PAGES = (
     "docs/guides/reading_a_report.md",
     "docs/commands.md",
     "docs/researchers/evaluation.md",
-    "docs/researchers/ratios.md",
     "README.md",
 )
 """Pages, run in this order and in one folder: a page may show what an earlier one's commands have written."""

@@ -3,6 +3,5 @@
 ``ratio_search.py`` lists the planner's comparisons and the attacks, and branches on what saves the optimal plan;
 ``class_rows.py`` has the linear rows of the class. ``program.py`` proves each node's bound in rationals.
 ``witness.py`` replays an instance exactly, and with ``families.py`` holds families of instances that attain bounds.
-``closed_form.py`` says what is proved and conjectured of the ratio. ``analysis/ratios`` asks whether several planners,
-or exchanges, do better.
+``closed_form.py`` says what is proved and conjectured of the ratio.
 """

@@ -20,8 +20,8 @@ from ratt_opt import (
     worst_case_ratio,
 )
 from ratt_opt.worst_ratio.closed_form import known_ratio, proved_ratio, sensing_ratio, three_left_ratio
-from ratt_opt.worst_ratio.families import link_only_instance, pair_instance, sensing_instance
-from ratt_opt.worst_ratio.witness import attaining_instance, replay
+from ratt_opt.worst_ratio.families import link_only_instance, pair_instance, sensing_instance, shared_plan_instance
+from ratt_opt.worst_ratio.witness import PLANNERS, attaining_instance, replay
 
 HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
 
@@ -133,3 +133,12 @@ def test_a_conjecture_fails_at_a_team_it_was_not_made_from() -> None:
     assert found.exact_lower == found.exact_upper == Fraction(13, 20)
     assert float(survivor_bound(4, c=0.25)) == pytest.approx(13 / 20)
     assert survivor_bound(3, c=0.25) > 13 / 20
+
+
+@pytest.mark.parametrize("size", [1, 2, 3])
+def test_three_planners_agree_on_a_plan_that_tends_to_the_pattern_free_bound(size) -> None:
+    k = Fraction(1, 3)
+    witness = shared_plan_instance(size, k)
+    for planner in PLANNERS:
+        assert replay(replace(witness, planner=planner)) == (1 + (size - 1) * (1 - k)) / size
+    assert len({tuple(plan(witness.problem()).elements) for plan in PLANNERS.values()}) == 1

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from analysis import audit_page
 from analysis.audit_page import main, page, ratio_table, realistic_table
+from tests.documents import ROOT
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -62,3 +64,15 @@ def test_no_page_from_half_a_ledger(tmp_path: Path, state: dict[str, bool], caps
         main(["--ledger", str(tmp_path), "--out", str(tmp_path / "page.md")])
     assert "quick or interrupted" in capsys.readouterr().err
     assert not (tmp_path / "page.md").exists()
+
+
+def test_pages_name_the_steps_that_the_ledger_says_fail() -> None:
+    """Names stand on three pages; the first is written from the ledger."""
+    text = (ROOT / "docs" / "researchers" / "audit.md").read_text(encoding="utf-8")
+    outcome = re.search(r"\| fails in every reading \| (\d+) \| (.*?) \|", text)
+    assert outcome is not None
+    labels = re.sub(r" \(\d+\)", "", outcome[2]).replace("\\", "").split(", ")  # numbers are of equations
+    assert len(labels) == int(outcome[1]) > 0
+    for name in ("README.md", "docs/researchers/evaluation.md"):
+        text = (ROOT / name).read_text(encoding="utf-8")
+        assert set(re.findall(r"`((?:nd|sub)_p\w+)`", text)) == set(labels)
