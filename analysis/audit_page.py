@@ -2,7 +2,8 @@
 
 Run as ``python -m analysis.audit_page --ledger DIR --out PAGE``. ``DIR`` is the folder of ``ratt-opt audit --out
 DIR``. Every verdict and number of the page is read from its ``audit.json`` or computed here as an exact worst-case
-ratio; ``--figure FILE`` and ``--instances FILE`` name pictures beside the page.
+ratio; ``--figure FILE`` and ``--instances FILE`` name pictures beside the page. With ``--record``, the decisions of
+``ratt-opt audit --search-whole --out DIR`` become those that later audits re-check.
 """
 
 from __future__ import annotations
@@ -13,7 +14,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from analysis.worst_ratio import theorem1
 from ratt_audit.report.chains import chain_lines
 from ratt_audit.report.findings import (
     BY_ATTACK,
@@ -28,15 +28,18 @@ from ratt_audit.report.findings import (
 )
 from ratt_audit.report.pages import finding_lines
 from ratt_opt import caa, worst_case_ratio
+from ratt_opt._files import write_atomically
 from ratt_opt.worst_ratio.closed_form import pattern_free_ratio
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from ratt_audit.report.records import LedgerDocument, WorstRecord
+    from ratt_audit.report.records import LedgerDocument, WholeRecord, WorstRecord
+    from ratt_audit.whole.recorded import Recorded
 
-__all__ = ["CASES", "page", "ratio_table", "realistic_table"]
+__all__ = ["CASES", "page", "ratio_table", "realistic_table", "theorem1"]
 
+RECORD = Path(__file__).parents[1] / "ratt_audit" / "whole" / "recorded.json"
 CURVATURE = Fraction(1, 2)
 PLANNERS = ("ratt", "myopic", "greedy")
 CASES = (
@@ -73,11 +76,12 @@ This page is written by commands:
 <!-- slow -->
 ```bash
 ratt-opt audit --search-whole --out ledger
-python -m analysis.worst_ratio --out curves && cp curves/worst_ratio.png docs/researchers/
-python -m analysis.whole_instances --ledger ledger --out docs/researchers/whole_instances.png
 python -m analysis.audit_page --ledger ledger --out docs/researchers/audit.md --figure worst_ratio.png \\
     --instances whole_instances.png
 ```
+
+The two pictures are of November 2026: `analysis/worst_ratio.py` and `analysis/whole_instances.py` of
+commit df08edb7 drew them.
 """
 
 
@@ -160,6 +164,30 @@ def _ratio_rows(cases: Sequence[tuple[str, int, int, int]]) -> Iterator[tuple[st
         yield (family, str(n), str(alpha_s), str(alpha_c), *exact, *map(str, bounds))
 
 
+def theorem1(family: str, curvature: Fraction, alpha_cs: int) -> Fraction:
+    """Right side of ratt.tex, eqn:appro_non_descrease or eqn:appro_submodular; without links cut, its first term."""
+    kept = 1 - curvature
+    first, second = (kept / (1 + curvature), kept) if family == "submodular" else (kept**3, kept**2)
+    return min(first, second / alpha_cs) if alpha_cs else first
+
+
+def record(records: Sequence[WholeRecord], path: Path = RECORD) -> None:
+    """Write the decisions and the values of each instance, one line of the paper a line of text."""
+    lines = [json.dumps(_as_recorded(each), separators=(",", ":")) for each in records]
+    write_atomically(path, lambda file: file.write_text("[\n" + ",\n".join(lines) + "\n]\n", encoding="utf-8"))
+
+
+def _as_recorded(one: WholeRecord) -> Recorded:
+    found = one["instance"]
+    return {
+        "label": one["label"],
+        "kind": one["kind"],
+        "worst_for": one["worst_for"],
+        "teams": [(each["team"], each["verdict"]) for each in one["teams"]],
+        "values": None if found is None else found["values"],
+    }
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -167,10 +195,15 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--figure", default="", help="picture to show, as seen from the page")
     parser.add_argument("--instances", default="", help="picture of the whole instances, as seen from the page")
+    parser.add_argument("--record", action="store_true", help="let later audits re-check these decisions")
     options = parser.parse_args(arguments)
     document = json.loads((options.ledger / "audit.json").read_text(encoding="utf-8"))
     if document["quick"] or not document["complete"]:
         parser.error(f"{options.ledger} holds a quick or interrupted audit: run ratt-opt audit --out {options.ledger}")
+    if options.record:
+        if not document.get("whole_searched"):
+            parser.error(f"{options.ledger} was not searched: run ratt-opt audit --search-whole --out {options.ledger}")
+        record(document["whole_instances"])
     options.out.write_text(page(document, ratio_table(CASES), options.figure, options.instances), encoding="utf-8")
     print(f"written: {options.out}")
 

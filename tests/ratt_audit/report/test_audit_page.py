@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from analysis import audit_page
-from analysis.audit_page import main, page, ratio_table, realistic_table
+from analysis.audit_page import main, page, ratio_table, realistic_table, record, theorem1
+from ratt_audit.whole.recorded import recorded_lines
+from ratt_opt import theorem1_bound
 from tests.documents import ROOT
 
 if TYPE_CHECKING:
@@ -76,3 +79,23 @@ def test_pages_name_the_steps_that_the_ledger_says_fail() -> None:
     for name in ("README.md", "docs/researchers/evaluation.md"):
         text = (ROOT / name).read_text(encoding="utf-8")
         assert set(re.findall(r"`((?:nd|sub)_p\w+)`", text)) == set(labels)
+
+
+@pytest.mark.parametrize("alpha_cs", [0, 1, 2, 5])
+@pytest.mark.parametrize("value", [Fraction(0), Fraction(3, 10), Fraction(1)])
+def test_theorem_1_as_the_library_states_it(alpha_cs: int, value: Fraction) -> None:
+    assert float(theorem1("submodular", value, alpha_cs)) == pytest.approx(theorem1_bound(alpha_cs, k=float(value)))
+    assert float(theorem1("nondecreasing", value, alpha_cs)) == pytest.approx(theorem1_bound(alpha_cs, c=float(value)))
+
+
+def test_decisions_are_recorded_as_they_are_read(tmp_path: Path) -> None:
+    lines: list[Any] = [
+        line
+        | {
+            "instance": None if line["values"] is None else {"values": line["values"]},
+            "teams": [{"team": team, "verdict": verdict} for team, verdict in line["teams"]],
+        }
+        for line in recorded_lines()
+    ]
+    record(lines, tmp_path / "recorded.json")
+    assert json.loads((tmp_path / "recorded.json").read_text(encoding="utf-8")) == list(recorded_lines())
