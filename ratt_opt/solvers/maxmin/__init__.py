@@ -3,7 +3,7 @@
 Open ``solve.py`` first. ``upper_bound_portfolio.py`` runs the stages of ``stages/schedule.py`` in turns, which lower
 the upper end, by time slices (``time_slices.py``). Every number is a field of ``params``.
 
-- Concave relaxations, tree after tree (``restarts.py``): ``branch_and_bound.py`` is the loop over the nodes of one
+- Concave relaxations, tree after tree (``restarts.py``): ``concave_tree.py`` bounds and divides the nodes of one
   tree. ``frontier.py`` holds the nodes and the closing rule, ``relaxation.py`` the linear program, ``cut_store.py`` its
   cuts. ``winners.py`` decides which group of an outcome counts, ``small_groups.py`` tabulates small groups.
   ``division.py`` divides a node, by ``mixtures.py``. ``known.py`` is the state that all trees share.

@@ -86,19 +86,18 @@ class WinnerDivision:
 
 
 class Division:
-    """Branching rule of a node; the children go to the frontier."""
+    """Branching rule of a node."""
 
     def __init__(self, cuts: CutStore, by_winner: WinnerDivision) -> None:
         self.task, self.pool, self.cuts = cuts.task, cuts.pool, cuts
         self.by_winner, self.frontier = by_winner, by_winner.frontier
 
-    def divide(self, node: TreeNode, relaxed: RelaxedPlan | None) -> None:
+    def children(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
         """Branch on an undecided winner that would cut the relaxed plan off, else on the most mixed robot."""
         children = self._by_rest(node, relaxed) or self._by_winner(node, relaxed) or self._by_elements(node, relaxed)
         if not node.split:
             self._settle(node)
-        for child in children:
-            self.frontier.push(child)
+        return children
 
     def _by_rest(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
         """Children in which a robot is idle or busy, if few may be busy: the one that the relaxed plan decides least.

@@ -10,12 +10,12 @@ Source: conflict-directed backjumping (Prosser 1993).
 
 from __future__ import annotations
 
-import heapq
 from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.search.open_nodes import OpenNodes
 from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.proof import nodes_below
 
@@ -82,18 +82,33 @@ class ClosingRule:
         return self.level + self.gap * abs(bound) + self._rounding - bound
 
 
+class OpenTreeNode:
+    """A node of the tree that is open: the largest bound comes first, and no solution of a dropped one counts."""
+
+    __slots__ = ("_order", "node")
+
+    def __init__(self, node: TreeNode, serial: int) -> None:
+        self.node, self._order = node, (-node.bound, serial)
+
+    @property
+    def bound(self) -> float:
+        """Negated bound of the node."""
+        return np.inf if self.node.is_dropped else -self.node.bound
+
+    def __lt__(self, other: OpenTreeNode) -> bool:
+        return self._order < other._order
+
+
 class Frontier:
-    """Nodes that are open, the one in work, and those that were closed; any interrupt leaves a valid bound.
+    """Nodes that are open, and those that were closed; any interrupt leaves a valid bound.
 
     ``depth_first`` : whether the latest node is taken, instead of the one of largest bound.
     """
 
-    def __init__(self, rule: ClosingRule, *, depth_first: bool = False) -> None:
-        self.rule, self.depth_first = rule, depth_first
-        self.current: TreeNode | None = None
-        """The node in work, which is part of the bound."""
-        self._queue: list[tuple[float, int, TreeNode]] = []
-        self._pushed = 0
+    def __init__(self, rule: ClosingRule, root: TreeNode, *, depth_first: bool = False) -> None:
+        self.rule = rule
+        self.open: OpenNodes[OpenTreeNode] = OpenNodes([OpenTreeNode(root, 0)], 0 if depth_first else np.inf)
+        self._pushed = 1
         self._closed: list[TreeNode] = []
         self.fresh: list[TreeNode] = []
         """Nodes that were closed and not followed up the tree; see :class:`Backjumps`."""
@@ -104,43 +119,34 @@ class Frontier:
     @property
     def bound(self) -> float:
         """The largest bound of an open or finished node."""
-        still = [node.bound for node in self._largest()]
-        still.extend(node.bound for node, _ in self._settled if not node.is_dropped)
-        if self.current is not None:
-            still.append(self.current.bound)
-        return max([self._finished, *still])
+        settled = [node.bound for node, _ in self._settled if not node.is_dropped]
+        return max([self._finished, self._largest, *settled])
 
     @property
     def is_closed(self) -> bool:
         """True if every open node closes."""
-        return all(self.rule.closes(node.bound) for node in self._largest())
+        largest = self._largest
+        return not self.open or self.rule.closes(largest)
 
-    def _largest(self) -> Iterator[TreeNode]:
-        """Queued nodes, one of which has the largest bound of them."""
-        while self._queue and self._queue[0][2].is_dropped:
-            heapq.heappop(self._queue)
-        return (node for _, _, node in (self._queue if self.depth_first else self._queue[:1]) if not node.is_dropped)
+    @property
+    def _largest(self) -> float:
+        """The largest bound of an open node."""
+        self.open.prune(lambda one: one.node.is_dropped)
+        return -float(self.open.bound)
+
+    def queued(self, node: TreeNode) -> OpenTreeNode:
+        """Return a node as the queue has it, behind those of the same bound."""
+        self._pushed += 1
+        return OpenTreeNode(node, self._pushed)
 
     def push(self, node: TreeNode) -> None:
         """Queue an open node."""
-        heapq.heappush(self._queue, (-self._pushed if self.depth_first else -node.bound, self._pushed, node))
-        self._pushed += 1
-
-    def take(self) -> TreeNode:
-        """Make the open node of largest bound, or the latest that does not close, the one in work."""
-        while (first := self._queue[0][2]).is_dropped or (self.depth_first and self.rule.closes(first.bound)):
-            if not first.is_dropped:
-                self.close(first)
-            heapq.heappop(self._queue)
-        self.current = node = self._queue[0][2]  # before it leaves the queue: an interrupt must not lose it
-        heapq.heappop(self._queue)
-        return node
+        self.open.keep([self.queued(node)])
 
     def nodes(self) -> Iterator[TreeNode]:
-        """All that are open, in work, closed or settled."""
-        queued, settled = (node for _, _, node in self._queue), (node for node, _ in self._settled)
-        current = [] if self.current is None else [self.current]
-        return chain(queued, current, self._closed, settled)
+        """All that are open, closed or settled."""
+        queued, settled = (one.node for one in self.open), (node for node, _ in self._settled)
+        return chain(queued, self._closed, settled)
 
     def finish(self, node: TreeNode) -> None:
         """Close a node if its bound closes it, else queue it."""

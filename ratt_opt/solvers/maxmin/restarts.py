@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.budget import Stop
-from ratt_opt.solvers.maxmin.branch_and_bound import BranchAndBound
+from ratt_opt.solvers.maxmin.concave_tree import ConcaveTree
 from ratt_opt.solvers.maxmin.time_slices import TimeSlicesUntil
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class RestartedSearch:
 
     def __init__(self, known: Known) -> None:
         self._known = known
-        self.first = self._best = self._current = BranchAndBound(known)
+        self.first = self._best = self._current = ConcaveTree(known)
         self._params = known.task.params.restarts
         self._tree_nodes, self._until = float(self._params.later), self._params.first
 
@@ -65,7 +65,7 @@ class RestartedSearch:
     def _is_nearly_done(self) -> bool:
         return self.upper - self._known.incumbent.candidates.level <= self._params.nearly * abs(self.upper)
 
-    def _lowest(self) -> BranchAndBound:
+    def _lowest(self) -> ConcaveTree:
         return min(self._best, self._current, key=lambda tree: tree.upper)
 
     def _told(self, progress: Progress) -> Progress:
@@ -79,4 +79,4 @@ class RestartedSearch:
             self._tree_nodes *= self._params.growth
         self._best = self._lowest()
         self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
-        self._current = BranchAndBound(self._known, depth_first=True)
+        self._current = ConcaveTree(self._known, depth_first=True)

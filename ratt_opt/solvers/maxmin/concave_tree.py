@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import largest_of_each
-from ratt_opt.budget import Stop
+from ratt_opt.budget import OutOfBudget, Stop
+from ratt_opt.search.branch_and_bound import divide_nodes
 from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division, WinnerDivision
 from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.frontier import Backjumps, Frontier
@@ -24,31 +25,31 @@ from ratt_opt.solvers.maxmin.winners import Winners
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.solvers.maxmin.frontier import OpenTreeNode
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
     from ratt_opt.solvers.maxmin.time_slices import TimeSlices
     from ratt_opt.solvers.maxmin.turn import Progress
 
-__all__ = ["BranchAndBound"]
+__all__ = ["ConcaveTree"]
 
 
-class BranchAndBound:
+class ConcaveTree:
     """The search of one tree; :meth:`run` may be interrupted at any point and leaves a valid bracket and proof."""
 
     def __init__(self, known: Known, *, depth_first: bool = False) -> None:
         self.task, self.pool = known.task, known.incumbent.pool
         self.limit = self.task.problem.choice_limit
         self.incumbent, self.rule, self.cuts = known.incumbent, known.rule, known.cuts
-        self.frontier = Frontier(self.rule, depth_first=depth_first)
         self.winners = Winners(known.proofs, self.incumbent.candidates)
         self.rounds = CutRounds(self.cuts, self.winners, self.incumbent.adversary, rows_from=known.rows_from)
+        self.root = self._first_node()
+        self.frontier = Frontier(self.rule, self.root, depth_first=depth_first)
         self.by_winner = WinnerDivision(self.winners, self.frontier)
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
         self.backjumps = Backjumps(self.frontier, self.cuts)
-        self.root = self._first_node()
-        self.frontier.push(self.root)
 
     @property
     def upper(self) -> float:
@@ -61,42 +62,40 @@ class BranchAndBound:
 
     def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
-        while not self._is_finished():
-            if (stop := slices.budget.stop() or slices.stop()) is not None:
-                return stop
-            if (stop := self._explore_next(slices)) is not None:
-                return stop
-            self.backjumps.follow()
+        self._slices = slices
+
+        def told() -> None:
             if progress is not None:
                 progress(slices.budget.nodes, self.incumbent.proved.lower, self.upper)
-        return Stop.GAP
 
-    def _is_finished(self) -> bool:
-        """Test whether every open node closes, and everything that was closed still does."""
+        try:
+            return divide_nodes(self.frontier.open, self, told) or Stop.GAP
+        except OutOfBudget as out:
+            return out.stop
+
+    def stop(self) -> Stop | None:
+        """Stop if every open node closes and everything that was closed still does, or it is time to."""
+        if self.frontier.open.in_hand is None:
+            self.backjumps.follow()
         for outcome in self.winners.reconsider():
             self.winners.reopen(outcome, self.root, self.frontier)
-        return self.frontier.is_closed and not self.frontier.reopen()
+        if self.frontier.is_closed and not self.frontier.reopen():
+            return Stop.GAP
+        return self._slices.budget.stop() or self._slices.stop()
 
-    def _explore_next(self, slices: TimeSlices) -> Stop | None:
-        """Bound the open node of largest bound, then close it or divide it; why to stop if it is neither."""
-        node = self.frontier.take()
-        slices.budget.nodes += 1
-        stop = self._explore(node, slices)
-        if stop is not None:
-            assert self.frontier.current is not None
-            self.frontier.push(self.frontier.current)
-        self.frontier.current = None
-        return stop
+    def bound(self, queued: OpenTreeNode) -> tuple[TreeNode, RelaxedPlan | None] | None:
+        """Bound a node by rounds of cuts; return it, narrowed, and its relaxed plan, if it is not closed.
 
-    def _explore(self, node: TreeNode, slices: TimeSlices) -> Stop | None:
-        """Bound one node by rounds of cuts, then close it or divide it; why to stop if it is neither."""
-        narrowed = self.small.narrow(node, self.rule.better) if self.rule.level > 0 else node
-        if narrowed is None:
+        Raises
+        ------
+        OutOfBudget : it is time to stop; the node stays in hand with what was proved of it.
+        """
+        slices = self._slices
+        if self.rule.closes(queued.node.bound):
+            self.frontier.close(queued.node)
             return None
-        self.frontier.current = node = narrowed
-        if self.limit is not None and not self.limit.has_plan(node.choices):
-            node.tighten(Leaf(cuts=(), weights=()), 0.0)
-            self.frontier.close(node)
+        slices.budget.nodes += 1
+        if (node := self._narrowed(queued.node)) is None:
             return None
         nodes, stalls = slices.budget.nodes, 0
         params = self.task.params.rounds
@@ -107,10 +106,9 @@ class BranchAndBound:
         while True:
             relaxed = None if why_stop() else self.rounds.solve(node)
             if relaxed is None and (stop := why_stop()) is not None:
-                return stop
+                raise OutOfBudget(stop)
             if relaxed is None:
-                self.division.divide(node, None)
-                return None
+                return node, None
             before = node.bound
             found = self._tighten(node, relaxed)
             if self.rule.closes(node.bound):
@@ -119,7 +117,7 @@ class BranchAndBound:
             plan = relaxed.rounded(self.task.choices, self.limit)
             if self.incumbent.offer(plan):
                 self.incumbent.improve(plan)
-            self.frontier.current = node = self._eliminate(node, *found)
+            node = self._in_hand(self._eliminate(node, *found))
             stalls = stalls + 1 if before - node.bound < params.stall * (node.bound - self.rule.level) else 0
             stalled = not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls
             if stalled and hulls > 0 and self.rounds.sharpen(node, relaxed):
@@ -127,11 +125,31 @@ class BranchAndBound:
             if stalled:
                 if nodes & (nodes - 1) == 0:  # the first nodes, and ever fewer
                     self.incumbent.improve(plan)
-                if self.rule.closes(node.bound):  # by a plan found just now
-                    self.frontier.close(node)
-                else:
-                    self.division.divide(node, relaxed)
+                if not self.rule.closes(node.bound):
+                    return node, relaxed
+                self.frontier.close(node)  # by a plan found just now
                 return None
+
+    def _narrowed(self, node: TreeNode) -> TreeNode | None:
+        """Narrow the node in hand by small groups; ``None`` if it is closed, or divided."""
+        narrowed = self.small.narrow(node, self.rule.better) if self.rule.level > 0 else node
+        if narrowed is None:
+            return None
+        node = self._in_hand(narrowed)
+        if self.limit is None or self.limit.has_plan(node.choices):
+            return node
+        node.tighten(Leaf(cuts=(), weights=()), 0.0)
+        self.frontier.close(node)
+        return None
+
+    def branch(self, bounded: tuple[TreeNode, RelaxedPlan | None]) -> list[OpenTreeNode]:
+        """Return the children of a node."""
+        return [self.frontier.queued(child) for child in self.division.children(*bounded)]
+
+    def _in_hand(self, node: TreeNode) -> TreeNode:
+        """Let a narrowed node be in hand in the place of the whole one."""
+        self.frontier.open.raise_bound(self.frontier.queued(node))
+        return node
 
     def _tighten(self, node: TreeNode, relaxed: RelaxedPlan) -> tuple[Leaf, float, FloatArray]:
         """Derive the node's bound from the multipliers, keeping the old one if it is better.
