@@ -193,6 +193,17 @@ class Budget:
         evaluations = None if isinf(self.evaluations_left) else int(share * self.evaluations_left)
         return Budget.inside(self, seconds, max_nodes, evaluations)
 
+    def beyond(self, seconds: float) -> Budget:
+        """A budget with some more seconds, for what is worth an overrun; values and interrupts count as here."""
+        longer = Budget.inside(self)
+        if self.time_limit is not None:
+            longer.time_limit = self.seconds_left + seconds
+        return longer
+
+    def keep_to(self, other: Budget) -> None:
+        """Have as many seconds left as another budget: no overrun from now on."""
+        self.time_limit = None if other.time_limit is None else self.elapsed + other.seconds_left
+
     @contextmanager
     def stage(self, share: float = 1.0, *, max_nodes: int | None = None) -> Iterator[Budget]:
         """A part whose nodes count here too, and whose end is only the end of what is done ``with`` it.

@@ -203,7 +203,7 @@ def _refined_by_values(
     most = np.inf if max_kicks is None else check_integer("max_kicks", max_kicks, low=0)
     given = [] if start is None else [problem.check_plan(start.elements if isinstance(start, Plan) else start)]
     seed = check_integer("seed", seed, low=0)
-    search = PlanSearch(problem, budget, seed=seed, on_improvement=on_improvement)
+    search = PlanSearch(problem, budget, params.search, seed=seed, on_improvement=on_improvement)
     is_patient = max_kicks is None and np.isinf(budget.seconds_left)
     stop = Stop.HEURISTIC
     try:

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Climbing"]
 
-MOST_KEPT = 500_000
-"""Stored values, some hundred megabytes at most; others are computed again."""
-
 
 class Climbing:
-    """Values of sets of elements, kept from plan to plan; what the known attacks leave of a plan; climbs."""
+    """Values of sets of elements, kept from plan to plan; what the known attacks leave of a plan; climbs.
 
-    def __init__(self, problem: Problem, attacks: PlanAttacks, budget: Budget) -> None:
-        self._problem, self._attacks, self._budget = problem, attacks, budget
+    ``most_kept`` : values; beyond, they are computed again
+    """
+
+    def __init__(self, problem: Problem, attacks: PlanAttacks, most_kept: int) -> None:
+        self._problem, self._attacks, self._most_kept = problem, attacks, most_kept
         self._known: dict[frozenset[int], float] = {}
         self._asked = attacks.problem.objective
 
@@ -51,7 +51,7 @@ class Climbing:
                         break
                 i = (i + 1) % len(current)
         except OutOfBudget:
-            self._budget.check()
+            self._attacks.budget.check()
         finally:
             self._asked = self._attacks.problem.objective
         return current
@@ -119,7 +119,7 @@ class Climbing:
 
     def _worth_of(self, sets: list[frozenset[int]]) -> list[float]:
         """Values of sets; those that are not known are computed in one batch."""
-        if len(self._known) > MOST_KEPT:
+        if len(self._known) > self._most_kept:
             self._known.clear()
         new = list({one: None for one in sets if one not in self._known})
         if new:

@@ -13,7 +13,6 @@ elements that are equal. If no two robots choose a column, the robot of any colu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +23,6 @@ from ratt_opt.solvers.by_values.columns import PlanColumns
 from ratt_opt.solvers.by_values.outcome_rows import OutcomeRows, blinds_alone
 from ratt_opt.solvers.by_values.part_row import SUM, PartRow, combine, down_to_multiple
 from ratt_opt.solvers.by_values.plan_tree import Pooled
-from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.relaxation import NodeProgram
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
 from ratt_opt.solvers.maxmin.rows.inequalities import Inequalities, TargetInequality
@@ -37,26 +35,10 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
     from ratt_opt.solvers.by_values.columns import PlanNode
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
+    from ratt_opt.solvers.maxmin.params import MaxMinParams
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
 
-__all__ = ["PartRowParams", "PartRows"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PartRowParams:
-    """Effort of one round; more of each gives fewer rounds for more time.
-
-    ``rows`` : rows added; ``fresh`` : outcomes whose parts get new bounds
-    ``tolerance`` : relative violation of a row that is added
-    ``deep`` : share of what is open by which rows of bounds known have to cut, so that none are looked for
-    ``patience`` : solves without a multiplier after which a row leaves the program
-    """
-
-    rows: int = 8
-    fresh: int = 2
-    tolerance: float = 1e-9
-    deep: float = 0.1
-    patience: int = 8
+__all__ = ["PartRows"]
 
 
 class PartRows:
@@ -66,22 +48,23 @@ class PartRows:
     ``budget`` : of the first bounds, which raise ``OutOfBudget``
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0917
         self,
         problem: Problem,
         parts: Decomposition,
         attacks: PlanAttacks,
         single: FloatArray | None,
         budget: Budget,
+        params: MaxMinParams,
     ) -> None:
         self._problem, self._parts, self._attacks = problem, parts, attacks
-        self._params, self._spacing = PartRowParams(), problem.objective.spacing
+        self._params, self._of_pool, self._spacing = params.part_rows, params.rows, problem.objective.spacing
         only_blinds = blinds_alone(problem)
         # Elements of equal utilities may be exchanged: what they are worth depends on nothing else.
         merges = only_blinds and not problem.threat.protected_robots and isinstance(problem.objective, BestElements)
         self.columns = columns = PlanColumns(problem, parts, merges=merges)
         self._touching = [parts.touching(j) for j in range(parts.n_parts)]
-        self._pool = InequalityPool(problem.robot, parts.n_parts, self._first_bounds(budget), RowParams())
+        self._pool = InequalityPool(problem.robot, parts.n_parts, self._first_bounds(budget), params.rows)
         self._levels = parts.n_parts if columns.merges else 0
         sizes = columns.sizes
         self._program = NodeProgram(len(columns.kinds), columns.of_kind, columns.limit, sizes, self._levels)
@@ -147,7 +130,7 @@ class PartRows:
 
         Rows are taken between the plan and a mean of earlier ones first, which needs fewer rounds.
         """
-        params, fresh = RowParams(), self._params.fresh
+        params, fresh = self._of_pool, self._params.fresh
         point, values = point[: len(self.columns.kinds)], point[len(self.columns.kinds) :]
         self._mean = self.columns.within(self._mean, node, point)
         self._mean = (1 - params.newest) * self._mean + params.newest * point
@@ -271,7 +254,7 @@ class PartRows:
             by_robot = self._pool.by_robot(self.columns.share(point))
             worth = self._pool.target_bounds(self._outcomes.left, by_robot).sum(axis=1)
             starts = [
-                self._outcomes.attacks[k] for k in np.argsort(worth, kind="stable")[: RowParams().starts].tolist()
+                self._outcomes.attacks[k] for k in np.argsort(worth, kind="stable")[: self._of_pool.starts].tolist()
             ]
             for attack in exchanged(self._problem, self._pool, by_robot, starts, (goal, budget)):
                 self._attacks.known.setdefault(attack, self._problem.groups_left(attack))

@@ -17,14 +17,9 @@ if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Attack, Problem
+    from ratt_opt.solvers.maxmin.params import FirstPlanParams
 
-__all__ = ["ATTACK_SHARE", "PlanAttacks"]
-
-ATTACK_SHARE = 0.2
-"""Share of the remaining seconds and values for the first attack on a plan. Not tuned."""
-FIRST_SECONDS, SHORT_SHARE = 1.0, 0.8
-"""Fewest seconds of the first attack, if they are at most this share of the remaining ones.
-With a fifth of one second, three quarters of what a second proves of RATT's plan for 20 robots were left unproved."""
+__all__ = ["PlanAttacks"]
 
 
 class PlanAttacks:
@@ -33,8 +28,10 @@ class PlanAttacks:
     ``known`` : attacks found so far, and the unblinded robots of the groups that each leaves
     """
 
-    def __init__(self, problem: Problem, budget: Budget, elements: IntArray, lower: float) -> None:
-        self._given, self._budget = problem, budget
+    def __init__(
+        self, problem: Problem, budget: Budget, elements: IntArray, lower: float, params: FirstPlanParams
+    ) -> None:
+        self._given, self._params, self.budget = problem, params, budget
         self.problem = metered_problem(problem, budget)
         self.elements, self.lower = elements, lower
         self.worst_case: AttackResult | None = None
@@ -43,19 +40,17 @@ class PlanAttacks:
         self.on_improvement: Callable[[IntArray], object] | None = None
         """Called with each plan that is kept."""
         self.known: dict[Attack, list[frozenset[int]]] = {}
-        self._first: bytes | None = None
         self._begun: dict[bytes, AttackMemory] = {}
-        """Memories of attacks that can go on: on the first plan, and on the last other one; some megabytes each."""
+        """Memories of attacks that can go on: on the first plans, and on the last other one; some megabytes each."""
+        self._first: set[bytes] = set()
         self._cut_short: set[bytes] = set()
         """Plans whose last attack a share of the budget ended."""
 
     def first(self, elements: IntArray) -> AttackResult:
-        """Attack the plan that all others are compared with."""
-        self._first = elements.tobytes()
-        seconds = min(FIRST_SECONDS, SHORT_SHARE * self._budget.seconds_left)
-        # If evaluations are limited, the attack may take most of them: a table takes a known number.
-        share = ATTACK_SHARE if np.isinf(self._budget.evaluations_left) else SHORT_SHARE
-        return self.attack(elements, self._budget.part(share, at_least=seconds))
+        """Attack one of the plans that all others are compared with."""
+        tables = not self._first and self.budget.evaluations_left < np.inf
+        self._first.add(elements.tobytes())
+        return self.attack(elements, self.budget.part(self._params.table) if tables else None)
 
     def attack(self, elements: IntArray, part: Budget | None = None, aim: float = -np.inf) -> AttackResult:
         """Attack a plan, from where that ended; keep it if more is proved of it than of the one kept.
@@ -66,7 +61,7 @@ class PlanAttacks:
         ------
         OutOfBudget : the user interrupted it; what it had proved counts.
         """
-        part = self._budget.part(ATTACK_SHARE) if part is None else part
+        part = self.budget.part(self._params.attack) if part is None else part
         key = elements.tobytes()
         memory = self._begun.pop(key, None) or AttackMemory()
         if self._is_kept:
@@ -78,8 +73,7 @@ class PlanAttacks:
         if result.stop in {Stop.TIME, Stop.EVALUATIONS}:
             self._cut_short.add(key)
         if result.stop in {Stop.TIME, Stop.EVALUATIONS, Stop.HEURISTIC, Stop.GAP}:
-            first = {k: self._begun[k] for k in [self._first] if k in self._begun}
-            self._begun = first | {key: memory}
+            self._begun = {k: one for k, one in self._begun.items() if k in self._first} | {key: memory}
         self.known.setdefault(result.attack, self._given.groups_left(result.attack))
         if not self._is_kept or result.lower > self.lower:
             self._keep(elements.copy(), max(result.lower, self.lower), result)
@@ -97,15 +91,17 @@ class PlanAttacks:
         if self.on_improvement is not None:
             self.on_improvement(elements)
 
-    def go_on(self, elements: IntArray) -> None:
-        """Attack a plan with all that is left if a share ended its last attack."""
-        if elements.tobytes() in self._cut_short & self._begun.keys() and not self._budget.is_over:
-            self.attack(elements, self._budget.part())
+    def go_on(self, elements: IntArray, *, at_first: bool = False) -> None:
+        """Attack a plan with all that is left if a share ended its last attack; ``at_first`` : with some of it."""
+        if elements.tobytes() in self._cut_short & self._begun.keys() and not self.budget.is_over:
+            params, left = self._params, self.budget.seconds_left
+            seconds = min(params.longer, params.longer_share * left) if at_first else left
+            self.attack(elements, self.budget.part(params.attack if at_first else 1.0, at_least=seconds))
 
     def settle(self, elements: IntArray, aim: float) -> AttackResult:
         """Attack a plan exactly with all that is left, until its worst case is proved to be at most ``aim``.
 
         If first attacks end as ``HEURISTIC`` the second one goes on to the end; so do both if nothing is limited.
         """
-        result = self.attack(elements, self._budget.part(), aim)
-        return self.attack(elements, self._budget.part(), aim) if result.stop is Stop.HEURISTIC else result
+        result = self.attack(elements, self.budget.part(), aim)
+        return self.attack(elements, self.budget.part(), aim) if result.stop is Stop.HEURISTIC else result

@@ -17,7 +17,6 @@ from ratt_opt.attack.exact import worst_case_attack_unrounded
 from ratt_opt.attack.task import AttackOptions, metered_problem
 from ratt_opt.bounds.guarantees import pattern_free_bound
 from ratt_opt.setfunctions.metered import unmetered
-from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE
 from ratt_opt.solvers.by_values.plan_tree import Pooled
 
 if TYPE_CHECKING:
@@ -29,14 +28,12 @@ if TYPE_CHECKING:
 __all__ = ["guarantee_bound", "pooling_bound"]
 
 
-def pooling_bound(problem: Problem, attacks: PlanAttacks, budget: Budget) -> float:
-    """Bound by the worst attack found on robots that hold all their elements."""
+def pooling_bound(problem: Problem, attacks: PlanAttacks, part: Budget) -> float:
+    """Bound by the worst attack found on robots that hold all their elements, within a part of the budget."""
     everyone = np.arange(problem.n_robots)
     team = replace(problem, objective=Pooled(problem, _singles(attacks.problem)), robot=everyone, at_most=None)
-    worst = worst_case_attack_unrounded(
-        team, everyone, AttackOptions(budget=budget.part(ATTACK_SHARE), brief=True)
-    ).attack
-    team = metered_problem(team, budget)
+    worst = worst_case_attack_unrounded(team, everyone, AttackOptions(budget=part, brief=True)).attack
+    team = metered_problem(team, attacks.budget)
     return min(team.team_value(everyone, attack) for attack in [*attacks.known, worst])
 
 

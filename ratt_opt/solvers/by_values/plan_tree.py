@@ -8,7 +8,6 @@ another one is. So it ends with the best plan, however long attacks take.
 
 from __future__ import annotations
 
-from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ import numpy as np
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.setfunctions.base import SetFunction, checked_values
 from ratt_opt.setfunctions.metered import unmetered
+from ratt_opt.solvers.by_values.divided_plans import DividedPlans
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
 
 __all__ = ["PlanTree", "Pooled"]
-
-MOST_OPEN = 50_000
-"""Nodes kept by their bounds; beyond, the last ones are divided first, which keeps few more."""
 
 OPEN = -1
 
@@ -61,101 +58,76 @@ class Pooled(SetFunction):
         return np.asarray(np.minimum(values, rising[:, self.n - self._most :].sum(axis=1)))
 
 
-class PlanTree:
-    """The nodes that are left; valid whenever it stops.
+class PlanTree(DividedPlans["IntArray"]):
+    """The nodes that are left, bounded by monotonicity: (N,) elements, or ``OPEN``.
 
     ``worth`` : of a set of elements, its value
+    ``known`` : what bounds all plans, and the nodes kept by their bounds
     """
 
     def __init__(
-        self, problem: Problem, attacks: PlanAttacks, worth: Callable[[frozenset[int]], float], upper: float
+        self,
+        problem: Problem,
+        attacks: PlanAttacks,
+        worth: Callable[[frozenset[int]], float],
+        known: tuple[float, int],
     ) -> None:
-        self._problem, self._attacks, self._worth = problem, attacks, worth
-        nothing = np.full(problem.n_robots, OPEN, dtype=np.int64)
-        self._heap: list[tuple[float, int, IntArray]] = [(-upper, 0, nothing)]
-        self._last: list[tuple[float, int, IntArray]] = []
-        self._count, self._settled = 0, -np.inf
+        upper, most = known
+        self._problem, self._worth = problem, worth
+        super().__init__(np.full(problem.n_robots, OPEN, dtype=np.int64), upper, attacks, most)
         self._attacked: dict[bytes, float] = {}
         """Values of the attacked plans under attack."""
 
-    @property
-    def upper(self) -> float:
-        """No plan of which less is known than of the best one is worth more."""
-        return max(self._settled, self._largest_left())
-
-    @property
-    def is_finished(self) -> bool:
-        """True if dividing can prove no more: the plans left are those of which attacks prove no more."""
-        return self._settled >= self._largest_left()
-
-    def _largest_left(self) -> float:
-        return max((-node[0] for node in [*self._heap[:1], *self._last]), default=-np.inf)
-
-    def divide(self, budget: Budget) -> None:
-        """Take the next node: drop it, attack a plan of it, or divide it."""
-        is_largest = not self._last
-        node = heappop(self._heap) if is_largest else self._last.pop()
-        attacks, partial = self._attacks, node[2]
-        bound = min(-node[0], *(self._team_value(partial, groups) for groups in attacks.known.values()))
-        budget.nodes += 1
+    def _divided(self, plans: IntArray, bound: float, budget: Budget) -> list[tuple[float, IntArray]]:
+        """Drop a node, attack a plan of it, or divide it."""
+        attacks, before = self._attacks, bound
+        bound = min(bound, *(self._team_value(plans, groups) for groups in attacks.known.values()))
         if bound <= attacks.lower:
-            return
-        is_plan = bool((partial != OPEN).all())
-        plan = np.where(partial == OPEN, attacks.elements, partial)
+            return []
+        is_plan = bool((plans != OPEN).all())
+        plan = np.where(plans == OPEN, attacks.elements, plans)
         if (limit := self._problem.choice_limit) is not None:
-            plan = limit.rest(plan, (partial != OPEN).astype(np.float64))
-        if is_plan and plan.tobytes() in self._attacked and is_largest and bound == -node[0]:
-            self._settle(plan, bound, budget)
-            return
-        if plan.tobytes() not in self._attacked and self._plan_value(plan) > attacks.lower:
+            plan = limit.rest(plan, (plans != OPEN).astype(np.float64))
+        key = plan.tobytes()
+        if is_plan and key in self._attacked and bound == before:
+            return self._settled_plan(plan, bound, budget)
+        if key not in self._attacked and self._plan_value(plan) > attacks.lower:
             found = attacks.attack(plan)
-            self._attacked[plan.tobytes()] = found.upper
-            bound = min(bound, self._team_value(partial, attacks.known[found.attack]))
+            self._attacked[key] = found.upper
+            bound = min(bound, self._team_value(plans, attacks.known[found.attack]))
         if bound <= attacks.lower:
-            return
-        if is_plan:
-            self._keep_plan(plan, min(bound, self._attacked.get(plan.tobytes(), bound)))
-        else:
-            self._push(partial, bound)
+            return []
+        if is_plan:  # it is looked at again once no node has a larger bound
+            return [(min(bound, self._attacked.get(key, bound)), plan)]
+        return self._children(plans, bound)
 
-    def _settle(self, plan: IntArray, bound: float, budget: Budget) -> None:
-        """Attack the plan of the largest bound until another bound is larger, or no more can be proved of it.
+    def _settled_plan(self, plan: IntArray, bound: float, budget: Budget) -> list[tuple[float, IntArray]]:
+        """Attack the plan of the largest bound until less is proved of it, or no more can be.
 
         Raises
         ------
         OutOfBudget : its next step needs more values than are left; that step would be tried for ever.
         """
         before, spent = bound, budget.evaluations
-        found = self._attacks.settle(plan, min(self._largest_left(), float(np.nextafter(bound, -np.inf))))
+        found = self._attacks.settle(plan, float(np.nextafter(bound, -np.inf)))
         bound = min(bound, found.upper)
         if bound <= self._attacks.lower:
-            return
-        if found.stop in {Stop.TIME, Stop.EVALUATIONS, Stop.GAP}:
-            self._keep_plan(plan, bound)
-            if found.stop is Stop.EVALUATIONS and bound == before and budget.evaluations == spent:
-                raise OutOfBudget(found.stop)
-        else:
-            self._settled = max(self._settled, bound)
+            return []
+        if found.stop not in {Stop.TIME, Stop.EVALUATIONS, Stop.GAP}:
+            self._settle(bound)
+            return []
+        if found.stop is Stop.EVALUATIONS and bound == before and budget.evaluations == spent:
+            raise OutOfBudget(found.stop)
+        return [(bound, plan)]
 
-    def _push(self, partial: IntArray, bound: float) -> None:
+    def _children(self, partial: IntArray, bound: float) -> list[tuple[float, IntArray]]:
         """The parts of a node, one for each element of a robot of the group that the known attacks leave."""
+        children = []
         for e in self._elements_of(self._robot(partial), partial):
             child = partial.copy()
             child[self._problem.robot[e]] = e
-            self._keep(child, bound)
-
-    def _keep_plan(self, plan: IntArray, bound: float) -> None:
-        """Look at a plan again once no node has a larger bound."""
-        self._count += 1
-        heappush(self._heap, (-bound, self._count, plan))
-
-    def _keep(self, partial: IntArray, bound: float) -> None:
-        self._count += 1
-        one = (-bound, self._count, partial)
-        if len(self._heap) < MOST_OPEN:
-            heappush(self._heap, one)
-        else:
-            self._last.append(one)
+            children.append((bound, child))
+        return children
 
     def _elements_of(self, robot: int, partial: IntArray) -> IntArray:
         """Elements that an open robot may take beside those that are decided: its idle one if enough are busy."""

@@ -18,18 +18,15 @@ from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.metered import unmetered
 from ratt_opt.setfunctions.properties import find_submodularity_violation
 from ratt_opt.setfunctions.sampling import Violation
-from ratt_opt.solvers.by_values.plan_attacks import ATTACK_SHARE
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.base import SetFunction
+    from ratt_opt.solvers.maxmin.params import ValueCheckParams
 
 __all__ = ["check_small", "refuse_along", "refuse_larger_gains", "relied_on"]
-
-CHECKED_SETS, CHECKED_TABLE = 2**12, 2**18
-"""Feasible sets up to which a function, and one given as a table, is checked to be non-decreasing: milliseconds."""
 
 
 def relied_on(f: SetFunction) -> tuple[str, ...]:
@@ -37,31 +34,31 @@ def relied_on(f: SetFunction) -> tuple[str, ...]:
     return ("non-decreasing", "submodular") if f.is_submodular else ("non-decreasing",)
 
 
-def check_small(problem: Problem, budget: Budget) -> None:
+def check_small(problem: Problem, budget: Budget, params: ValueCheckParams) -> None:
     """Refuse a small function that falls, or that says it is submodular and is not, showing where.
 
-    What cannot be looked at in time is relied on.
+    What cannot be looked at in its share of the budget is relied on.
 
     Raises
     ------
     InputError : the objective is not non-decreasing over feasible sets, or not submodular.
     """
-    _check_submodular(unmetered(problem.objective), budget)
+    _check_submodular(unmetered(problem.objective), budget, params)
     f = unmetered(problem.objective)
     domain = domain_of(f, problem.robot, None)
-    if f.is_non_decreasing or domain.count > (CHECKED_TABLE if isinstance(f, TableFunction) else CHECKED_SETS):
+    if f.is_non_decreasing or domain.count > (params.table if isinstance(f, TableFunction) else params.sets):
         return
     try:
-        enumerate_marginals(domain, budget.part(ATTACK_SHARE))
+        enumerate_marginals(domain, budget.part(params.share))
     except OutOfBudget:
         return
 
 
-def _check_submodular(f: SetFunction, budget: Budget) -> None:
-    is_small = 2**f.n <= min(CHECKED_SETS, ATTACK_SHARE * budget.evaluations_left)
+def _check_submodular(f: SetFunction, budget: Budget, params: ValueCheckParams) -> None:
+    is_small = 2**f.n <= min(params.sets, params.share * budget.evaluations_left)
     if not f.is_submodular or not is_small:
         return
-    found = find_submodularity_violation(f, budget=budget.part(ATTACK_SHARE))
+    found = find_submodularity_violation(f, budget=budget.part(params.share))
     if isinstance(found, Violation):
         _refuse(found.a, found.b, found.slack)
 

@@ -1,9 +1,10 @@
 """Plans for any set function, known by its values alone: a bracket of any size, within any number of values.
 
-First RATT's, the greedy and the myopic plan, each attacked and improved by exchanges of one element; no search returns
-less. Small problems are then enumerated (``exhaustive.py``). Beyond: bounds by rows (``row_tree.py``) if the function
-is submodular or a sum. Then walks from the best plan and branch and bound over all other plans take turns, by these
-rows or by monotonicity (``plan_tree.py``). It ends with exact attacks on plans that nothing else rules out.
+First RATT's, the greedy and the myopic plan, each attacked and improved by exchanges of one element: no search returns
+less, so these go on for a moment if a limit is shorter. Small problems are enumerated (``exhaustive.py``).
+Beyond: bounds by rows (``row_tree.py``) if the function is submodular or a sum. Then walks from the best plan and
+branch and bound over all other plans take turns, by these rows or by monotonicity (``plan_tree.py``). It ends with
+exact attacks on plans that nothing else rules out.
 """
 
 from __future__ import annotations
@@ -16,28 +17,27 @@ from ratt_opt.graph.outcomes import count_outcomes
 from ratt_opt.solvers.by_values.plan_search import PlanSearch
 from ratt_opt.solvers.by_values.reliance import check_small
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
+from ratt_opt.solvers.maxmin.params import or_default
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.params import MaxMinParams, ValueTurnParams
     from ratt_opt.solvers.result import MaxMinResult
 
 __all__ = ["solve_by_values"]
 
-ENUMERATION_SHARE = 0.5
-"""Share of the seconds and values left for the enumeration of a small problem. Not tuned."""
-MOST_OUTCOMES = 200_000
-"""Outcomes that are gone through: some seconds if plans are few."""
 DONE = {Stop.EXHAUSTED, Stop.CLOSED}
 
 
-def solve_by_values(
+def solve_by_values(  # noqa: PLR0917  (as solve_maxmin has them)
     problem: Problem,
     budget: Budget,
     gap: float = 1e-9,
     alpha_cs: int | None = None,
     otherwise: Callable[[], MaxMinResult | None] | None = None,
+    params: MaxMinParams | None = None,
 ) -> MaxMinResult:
     """Bracket the optimum of any non-decreasing function; ``alpha_cs`` : what RATT was asked before, if it was.
 
@@ -48,33 +48,36 @@ def solve_by_values(
     ------
     InputError : the function falls, if that is checked, or a value is no finite number.
     """
-    search = None
+    search, params = None, or_default(params)
     try:
-        check_small(problem, budget)
-        search = PlanSearch(problem, budget)
+        check_small(problem, budget, params.value_checks)
+        search = PlanSearch(problem, budget, params)
         search.start(alpha_cs)
-        found = _enumerated(problem, budget)
+        found = None if budget.is_over else _enumerated(problem, budget, params.value_turns)
         if found is not None and found.stop in DONE:
             return found
         search.learn(found)
-        search.bound_first()
-        if otherwise is not None:
+        if not budget.is_over:
+            search.bound_first()
+        closed = search.climb_first(gap)
+        if otherwise is not None and not closed:
+            budget.check()
             search.learn(otherwise())
             budget.check()
-        stop = search.run(gap)
+        stop = Stop.CLOSED if closed else search.run(gap)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
         stop = budget.interrupt()
-    return (search or PlanSearch(problem, budget)).result(stop)
+    return (search or PlanSearch(problem, budget, params)).result(stop)
 
 
-def _enumerated(problem: Problem, budget: Budget) -> MaxMinResult | None:
+def _enumerated(problem: Problem, budget: Budget, params: ValueTurnParams) -> MaxMinResult | None:
     """Enumerate plans and outcomes within a share of the budget; ``None`` if there are too many."""
-    if problem.threat.links_alike and count_outcomes(problem.threat, enough=MOST_OUTCOMES) > MOST_OUTCOMES:
+    if problem.threat.links_alike and count_outcomes(problem.threat, enough=params.outcomes) > params.outcomes:
         return None
     try:
-        return exhaustive_optimum(problem, budget=budget.part(ENUMERATION_SHARE))
+        return exhaustive_optimum(problem, budget=budget.part(params.enumerated))
     except InputError as error:
         if error.argument in {"problem", "graph"}:
             return None

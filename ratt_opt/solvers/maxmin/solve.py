@@ -74,7 +74,10 @@ def solve_maxmin(
     and bound, in the coordinates that are measured (:func:`ratt_opt.measured_coordinates`). Every bound is derived from
     the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
     the multipliers are used. Other set functions are enumerated if that is possible, and bracketed if it is not
-    (``solvers/by_values``); sums of best elements, such as coverage, as a trace, too (``coverage.py``).
+    (``solvers/by_values``); sums of best elements, such as coverage, as a trace, too (``coverage.py``). Of these no
+    plan is worse than RATT's, the greedy and the myopic one: they, their attacks and exchanges from them may overrun
+    the limit by up to ``params.first_plans.beyond`` seconds (0.4). Without a limit the search goes on until its bracket
+    closes; so give one if the team is large.
 
     Parameters
     ----------
@@ -87,8 +90,7 @@ def solve_maxmin(
     budget : an outer search's budget: its seconds and interrupts count too
     start : a plan (N,), or an earlier result of a similar problem, whose plan is used if the problem still allows it;
         what is enumerated needs none. Changes how long a search takes, not what it claims
-    params : of the search for information criteria, and of coverage as a trace (searches by values have numbers of
-        their own): they decide how soon the bracket closes, not whether it holds
+    params : numbers of the search; they decide how soon the bracket closes, not whether it holds
 
     Raises
     ------
@@ -101,7 +103,9 @@ def solve_maxmin(
     check_problem(problem, knows_at_most=True)
     budget, params = Budget.inside(budget, time_limit, max_nodes, max_evaluations), or_default(params)
     if not isinstance(problem.objective, InformationObjective):
-        return solve_by_values(problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap, params))
+        return solve_by_values(
+            problem, budget, gap, alpha_cs, lambda: _solve_as_trace(problem, budget, gap, params), params
+        )
     searched = prepared(problem)
     told = progress and (lambda nodes, lower, upper: progress(nodes, *searched.widen_by_rounding(lower, upper)))
     found = solve_in_coordinates(searched, budget, gap, told, alpha_cs, start, params=params)

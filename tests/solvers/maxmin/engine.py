@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 from ratt_opt import Attack, MaxMinParams, Stop
 from ratt_opt.solvers import exhaustive, ratt
-from ratt_opt.solvers.by_values import plan_tree
 from ratt_opt.solvers.maxmin import adversary, solve
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
 from ratt_opt.solvers.maxmin.restarts import RestartedSearch
@@ -102,7 +101,7 @@ def marginals(**limits: int) -> Way:
 
 def open_nodes(most: int) -> Way:
     """Nodes of a search by values that are kept by their bounds."""
-    return {(plan_tree, "MOST_OPEN"): most}
+    return {(MaxMinParams, "value_turns.most_open"): most}
 
 
 def by_marginals(found: MaxMinResult) -> bool:

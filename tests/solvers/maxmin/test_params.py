@@ -14,6 +14,8 @@ from ratt_opt import MaxMinParams
 from ratt_opt.cli import run
 from ratt_opt.solvers.maxmin import params as plan_params
 from ratt_opt.solvers.maxmin.params import AT_LEAST_ONE
+from tests.solvers.maxmin.engine import NO_PLANS_LISTED
+from tests.ways import go
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -69,6 +71,36 @@ def test_no_parameter_changes_what_is_claimed(place: str) -> None:
             assert place in AT_LEAST_ONE
             continue
         found = ro.solve_maxmin(problem, params=params, max_nodes=4, time_limit=0.5)
+        assert found.lower <= best * (1 + 1e-9)
+        assert found.upper >= best * (1 - 1e-9)
+
+
+BY_VALUES = {"value_checks", "first_plans", "value_walk", "value_turns", "part_rows", "row_tree"}
+
+
+@cache
+def own_team() -> tuple[ro.Problem, float]:
+    """Five robots and a sum of parts of one's own, and its best worst case."""
+    f = ro.FacilityLocation(np.random.default_rng(0).random((15, 6)))
+    problem = ro.Problem(f, np.repeat(np.arange(5), 3), None, 1, 2)
+    return problem, ro.exhaustive_optimum(problem).lower
+
+
+@pytest.mark.parametrize("place", [place for place in places() if place.split(".")[0] in BY_VALUES])
+def test_no_parameter_changes_what_is_claimed_of_functions_by_values(
+    place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    problem, best = own_team()
+    go(monkeypatch, NO_PLANS_LISTED)
+    family, name = place.split(".")
+    value = getattr(getattr(MaxMinParams(), family), name)
+    for least in (True, False):
+        try:
+            params = with_one(place, extreme(value, least=least))
+        except ro.InputError:
+            assert place in AT_LEAST_ONE
+            continue
+        found = ro.solve_maxmin(problem, params=params, max_nodes=2, time_limit=0.1)
         assert found.lower <= best * (1 + 1e-9)
         assert found.upper >= best * (1 - 1e-9)
 

@@ -33,6 +33,14 @@ from ratt_opt.solvers.maxmin.params.trees import (
     RestartParams,
     SmallGroupParams,
 )
+from ratt_opt.solvers.maxmin.params.values import (
+    FirstPlanParams,
+    PartRowParams,
+    RowTreeParams,
+    ValueCheckParams,
+    ValueTurnParams,
+    ValueWalkParams,
+)
 
 __all__ = [
     "DEFAULT",
@@ -43,6 +51,7 @@ __all__ = [
     "DepthParams",
     "DivisionParams",
     "FewPlansParams",
+    "FirstPlanParams",
     "GroupProofParams",
     "IncumbentParams",
     "KickParams",
@@ -50,11 +59,16 @@ __all__ = [
     "MarginalParams",
     "MaxMinParams",
     "OutcomeListParams",
+    "PartRowParams",
     "RestartParams",
     "RowParams",
+    "RowTreeParams",
     "SeparationParams",
     "SmallGroupParams",
     "TieParams",
+    "ValueCheckParams",
+    "ValueTurnParams",
+    "ValueWalkParams",
     "or_default",
 ]
 
@@ -63,6 +77,7 @@ AT_LEAST_ONE = (
     "walk.fewest", "walk.back", "rounds.cuts", "rounds.targets", "group_proofs.steps", "restarts.later",
     "restarts.growth", "depth.slice", "depth.growth", "levels.runs", "levels.growth", "marginals.run",
     "marginals.room", "marginals.sets", "covers.run", "covers.room", "rows.most", "coverage.information",
+    "value_walk.most_robots", "value_turns.nodes", "value_turns.growth", "part_rows.rows",
 )  # fmt: skip
 """Parameters without which a search would not go on, or not end."""
 
@@ -92,6 +107,12 @@ class MaxMinParams:
     covers: CoverSearchParams = field(default_factory=CoverSearchParams)
     separation: SeparationParams = field(default_factory=SeparationParams)
     coverage: CoverageParams = field(default_factory=CoverageParams)
+    value_checks: ValueCheckParams = field(default_factory=ValueCheckParams)
+    first_plans: FirstPlanParams = field(default_factory=FirstPlanParams)
+    value_walk: ValueWalkParams = field(default_factory=ValueWalkParams)
+    value_turns: ValueTurnParams = field(default_factory=ValueTurnParams)
+    part_rows: PartRowParams = field(default_factory=PartRowParams)
+    row_tree: RowTreeParams = field(default_factory=RowTreeParams)
 
     def __post_init__(self) -> None:
         """Check what a search could not go on without. ``InputError`` : it is less than 1, or there is no level."""
