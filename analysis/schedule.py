@@ -1,4 +1,4 @@
-"""The schedules of stages as Markdown: ``python -m analysis.schedule criterion|function|sizes|bounds``."""
+"""The schedules of stages as Markdown: ``python -m analysis.schedule criterion|function|sizes|bounds|plans``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt.attack.params import AttackParams
 from ratt_opt.attack.size_vectors.size_stages import SIZE_STAGES
 from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
-from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES
+from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES, PLAN_STAGES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,12 +37,22 @@ def bounds() -> None:
         print("| " + " | ".join([stage.name, done, when, stage.kind or stage.name]) + " |")
 
 
+def plans() -> None:
+    """Print the table of the stages that find the best plan and prove its value."""
+    print("| stage | what it does | applies when | moment |")
+    print("| --- | --- | --- | --- |")
+    for stage in PLAN_STAGES:
+        row = [stage.name, _sentence(stage.run), _sentence(stage.applies), stage.moment.value]
+        print("| " + " | ".join(row) + " |")
+
+
 def main() -> None:
     """Print one table."""
-    if sys.argv[1:] not in ([name] for name in (*TABLES, "bounds")):
+    own = {"bounds": bounds, "plans": plans}
+    if sys.argv[1:] not in ([name] for name in (*TABLES, *own)):
         sys.exit(__doc__)
-    if sys.argv[1] == "bounds":
-        bounds()
+    if sys.argv[1] in own:
+        own[sys.argv[1]]()
         return
     print("| stage | what it does | applies when | share of what is left | nodes at most |")
     print("| --- | --- | --- | --- | --- |")

@@ -26,8 +26,9 @@ from ratt_opt.problem import Attack, Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.plan_search import PlanSearch
-from ratt_opt.solvers.maxmin.incumbent import Incumbent, ProvedPlan, break_ties
+from ratt_opt.solvers.maxmin.incumbent import Incumbent, ProvedPlan
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.stages.ties import break_ties
 from ratt_opt.solvers.maxmin.walk import Walk
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.undominated import UndominatedProblem, dominators, undominated
@@ -156,10 +157,10 @@ def refined(
             incumbent.on_improvement = lambda plan: on_improvement(few.kept[plan])
         incumbent.pool.list_all(incumbent.params.outcomes)
         others = [planner(problem, budget=own).elements for planner in (greedy, myopic)]
-        _meet(incumbent, [among[plan] for plan in (first.elements, *given, *others)])
+        incumbent.meet([among[plan] for plan in (first.elements, *given, *others)])
         kicks = _walked(incumbent, rng, own, kicks_left, params)
         _prove(incumbent, own, params)
-        break_ties(incumbent, own)
+        break_ties(incumbent, own.part(incumbent.params.ties.share))
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -229,15 +230,6 @@ def _refined_by_values(
         kicks=search.kicks,
         worst_case=found.worst_case,
     )
-
-
-def _meet(incumbent: Incumbent, plans: list[IntArray]) -> None:
-    """Attack plans quickly, and improve the one that seems best."""
-    for plan in plans:
-        incumbent.adversary.learn(plan)
-    incumbent.improve(max(plans, key=incumbent.pool.plan_value))
-    for plan in plans:
-        incumbent.offer(plan)
 
 
 def _prove(incumbent: Incumbent, budget: Budget, params: RefinedParams) -> None:

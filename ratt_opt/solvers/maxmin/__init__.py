@@ -11,6 +11,7 @@ the upper end, by time slices (``time_slices.py``). Every number is a field of `
   (``marginal_search.py``, ``marginal_tables.py``).
 
 The lower bound: ``outcome_pool.py`` keeps the outcomes of attacks, ``candidates.py`` ranks and improves plans by them,
-``walk.py`` continues from there, ``adversary.py`` attacks plans, ``incumbent.py`` has the best proved one.
+``walk.py`` continues from there, ``adversary.py`` attacks plans, ``incumbent.py`` has the best proved one; its stages
+are in the same schedule.
 ``elements.py`` holds the elements that plans choose from; the tree of ``proof.py`` grows and becomes a proof.
 """

@@ -19,12 +19,12 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.solve_by_values import solve_by_values
 from ratt_opt.solvers.exhaustive import exhaustive_optimum
 from ratt_opt.solvers.maxmin.coverage import CoverageTrace
-from ratt_opt.solvers.maxmin.elements import Task
-from ratt_opt.solvers.maxmin.incumbent import PROVED, Incumbent, break_ties
-from ratt_opt.solvers.maxmin.known import Known
+from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import or_default
+from ratt_opt.solvers.maxmin.stages import schedule
+from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, Moment, run_plan_stages
 from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
@@ -153,13 +153,12 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     search: UpperBoundPortfolio | None = None
     try:
         pool.list_all(params.outcomes)
-        incumbent.start(_first_plans(problem, first, earlier, budget))
-        # Both sides together stay within the gap: what the search leaves, and what counts as a proved plan.
-        known = Known.of(Task.of(problem, params), incumbent, max(gap - PROVED, 0.0), by_rows=by_rows)
-        search = UpperBoundPortfolio(known, stages)
-        stop = _search_and_prove(search, TimeSlices(budget, incumbent), progress)
-        if incumbent.is_proved and not budget.is_over:
-            break_ties(incumbent, budget)
+        plans = _first_plans(problem, first, earlier, budget)
+        state = LowerEnd(incumbent=incumbent, plans=plans, gap=gap, by_rows=by_rows)
+        run_plan_stages(schedule.PLAN_STAGES, state, Moment.BEFORE)
+        search = UpperBoundPortfolio(state.known, stages)
+        stop = _search_and_prove(search, state, progress)
+        run_plan_stages(schedule.PLAN_STAGES, state, Moment.AFTER)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -189,14 +188,17 @@ def _first_plans(problem: Problem, first: IntArray, earlier: IntArray | None, bu
     return [first, *(planner(problem, budget=budget).elements for planner in (greedy, myopic))]
 
 
-def _search_and_prove(search: UpperBoundPortfolio, slices: TimeSlices, progress: Progress) -> Stop:
+def _search_and_prove(search: UpperBoundPortfolio, state: LowerEnd, progress: Progress) -> Stop:
     """Search plans, attack the best exactly, and go on with what that taught, until nothing is left or time is out."""
+    budget, incumbent = state.incumbent.budget, state.incumbent
+    slices = TimeSlices(budget, incumbent)
     while True:
         if progress is not None:
-            progress(slices.budget.nodes, slices.incumbent.proved.lower, search.upper)
+            progress(budget.nodes, incumbent.proved.lower, search.upper)
         stop = search.run(slices, progress)
-        if not slices.prove():
+        if not run_plan_stages(schedule.PLAN_STAGES, state, Moment.BETWEEN):
             return stop
+        slices.begin_turn()
 
 
 def _result(

@@ -39,11 +39,9 @@ class TimeSlices:
         stop = self.stop()
         return None if stop is Stop.NODES else stop
 
-    def prove(self) -> bool:
-        """Attack the best plan exactly; return whether the search can go on, and begin its next turn."""
-        goes_on = self.incumbent.prove()
+    def begin_turn(self) -> None:
+        """Begin the next slice."""
         self._slice = self.budget.part(self.incumbent.params.incumbent.searched)
-        return goes_on
 
 
 class TimeSlicesUntil(TimeSlices):

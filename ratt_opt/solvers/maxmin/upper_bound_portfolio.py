@@ -14,7 +14,6 @@ from ratt_opt.attack.staging import LEFT_OUT
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.stages import schedule
 from ratt_opt.solvers.maxmin.turn import Turn
-from ratt_opt.solvers.maxmin.walk import Walk
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,8 +85,6 @@ class UpperBoundPortfolio:
 
     def run(self, slices: TimeSlices, progress: Progress) -> Stop:
         """Search until the gap closes, the budget is spent or it is time for a proof; return why it stopped."""
-        if self._known.rows_from == 0 and slices.budget.nodes == 0:
-            self._walk(slices)
         told = progress and (lambda nodes, lower, upper: progress(nodes, lower, min(upper, self.upper)))
         if len(self._parts) == 1:
             stop = self._parts[0].run(Turn(slices=slices, progress=told, upper=np.inf, nodes=np.inf))
@@ -105,8 +102,3 @@ class UpperBoundPortfolio:
             if slices.budget.nodes == before:  # all that is left is what margins for rounding leave
                 return Stop.GAP
             self._slice, self._begun = self._slice * self._params.growth, True
-
-    def _walk(self, slices: TimeSlices) -> None:
-        """Look for a better plan before the root: what closes a node is measured by the best one."""
-        walk = Walk(self._known.incumbent, np.random.default_rng(0))
-        walk.run(slices.budget.part(self._params.walk_share), self._params.walk_kicks)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import networkx as nx
 import numpy as np
 import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, solve_maxmin
 from ratt_opt.solvers.maxmin.candidates import Candidates
-from ratt_opt.solvers.maxmin.time_slices import TimeSlices
+from ratt_opt.solvers.maxmin.stages.proof import ProofStage
 from ratt_opt.solvers.maxmin.winners import Winners
 from tests.solvers.maxmin.engine import UNLISTED
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, information_data
 from tests.ways import go
+
+if TYPE_CHECKING:
+    from ratt_opt.budget import Budget
+    from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd
 
 TOO_MUCH = 1.3
 """Times what it is worth that a plan seems to be worth until the search ends for the first time."""
@@ -30,15 +36,16 @@ def two_triangles(rng: np.random.Generator, kind: str) -> Problem:
 @pytest.mark.parametrize("seed", [0, 17, 29, 32, 39, 41, 48, 56])
 def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     hopeful, reopened = True, 0
-    level, prove, reopen = Candidates.level.fget, TimeSlices.prove, Winners.reopen
+    level, applies, prove = Candidates.level.fget, ProofStage.applies, ProofStage.run
+    reopen = Winners.reopen
 
     def hoped_for(plans: Candidates) -> float:
         return level(plans) * (TOO_MUCH if hopeful else 1.0)
 
-    def disappointed(slices: TimeSlices) -> bool:
+    def disappointed(stage: ProofStage, state: LowerEnd, budget: Budget) -> bool:
         nonlocal hopeful
         was, hopeful = hopeful, False
-        return prove(slices) or was
+        return (applies(stage, state) and prove(stage, state, budget)) or was
 
     def counted(winners: Winners, *about: object) -> None:
         nonlocal reopened
@@ -46,7 +53,8 @@ def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPat
         reopen(winners, *about)
 
     monkeypatch.setattr(Candidates, "level", property(hoped_for))
-    monkeypatch.setattr(TimeSlices, "prove", disappointed)
+    monkeypatch.setattr(ProofStage, "applies", lambda *_: True)
+    monkeypatch.setattr(ProofStage, "run", disappointed)
     monkeypatch.setattr(Winners, "reopen", counted)
     go(monkeypatch, UNLISTED)
     problem = two_triangles(np.random.default_rng([9, seed]), list(OBJECTIVES)[seed % 3])

@@ -1,4 +1,4 @@
-"""The schedule of the upper end: stages in the order of their turns. A new one is a file here, and one line."""
+"""The schedules of both ends: stages in the order in which they run. A new one is a file here, and one line."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ from typing import TYPE_CHECKING
 
 from ratt_opt.solvers.maxmin.stages.concave_trees import ConcaveTreesStage
 from ratt_opt.solvers.maxmin.stages.covers import CoversStage
+from ratt_opt.solvers.maxmin.stages.first_plans import AttackedStage, BestAttackedStage, ClimbStage, QuickValuesStage
 from ratt_opt.solvers.maxmin.stages.marginal_gains import MarginalGainsStage
+from ratt_opt.solvers.maxmin.stages.proof import ProofStage
+from ratt_opt.solvers.maxmin.stages.ties import TiesStage
+from ratt_opt.solvers.maxmin.stages.walk import WalkStage
 
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.stages.bound_stage import BoundStage
+    from ratt_opt.solvers.maxmin.stages.plan_stage import PlanStage
 
-__all__ = ["BOUND_STAGES", "TREES_ALONE"]
+__all__ = ["BOUND_STAGES", "PLAN_STAGES", "TREES_ALONE"]
 
 BOUND_STAGES: tuple[BoundStage, ...] = (
     ConcaveTreesStage(),
@@ -21,3 +26,13 @@ BOUND_STAGES: tuple[BoundStage, ...] = (
 """Stages of the upper end, in the order of their turns."""
 TREES_ALONE: tuple[BoundStage, ...] = (ConcaveTreesStage(),)
 """Stages whose proofs are trees of tangents alone."""
+PLAN_STAGES: tuple[PlanStage, ...] = (
+    AttackedStage(),
+    QuickValuesStage(),
+    ClimbStage(),
+    BestAttackedStage(),
+    WalkStage(),
+    ProofStage(),
+    TiesStage(),
+)
+"""Stages of the lower end, in order; each says at which moment it runs."""
