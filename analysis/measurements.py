@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from analysis.benchmarks.attack import SETTINGS, processor_seconds
+from analysis.benchmarks.instances import SETTINGS
 from ratt_opt import certify, greedy, random_scenario, ratt, solve_maxmin, verify_certificate, worst_case_attack
 from ratt_opt.scenario.limited_view import demo_scenario
 
@@ -53,6 +53,13 @@ class Value:
         """Tell whether a new measurement contradicts it: seconds above, other units on either side."""
         above = high > self.factor * self.high
         return above if self.unit == "s" else above or low * self.factor < self.low
+
+
+def processor_seconds(run: Callable[[], object]) -> float:
+    """Processor time of one call [s]."""
+    began = time.process_time()
+    run()
+    return time.process_time() - began
 
 
 def values() -> dict[str, Value]:

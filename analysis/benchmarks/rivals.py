@@ -30,7 +30,7 @@ from scipy.sparse.csgraph import shortest_path  # noqa: E402
 
 import ratt_opt as ro  # noqa: E402
 from analysis.benchmarks.exchanges import RivalBracket, exchanges  # noqa: E402
-from analysis.benchmarks.limited_view import team  # noqa: E402
+from analysis.benchmarks.instances import team  # noqa: E402
 from analysis.benchmarks.tangent_milp import attacked_exchanges, tangent_milp  # noqa: E402
 from ratt_opt.planners import scenario_program  # noqa: E402
 

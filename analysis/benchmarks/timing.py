@@ -1,25 +1,10 @@
-"""One way to time things, shared by every benchmark."""
+"""Limits that count seconds of the processor, for every benchmark."""
 
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-__all__ = ["best_seconds", "count_processor_time"]
-
-
-def best_seconds(run: Callable[[], object], repeats: int = 5, clock: Callable[[], float] = time.perf_counter) -> float:
-    """Return the smallest time of ``repeats`` runs after one that is not counted [s]; wall time by default."""
-    run()
-    times = []
-    for _ in range(repeats):
-        began = clock()
-        run()
-        times.append(clock() - began)
-    return min(times)
+__all__ = ["count_processor_time"]
 
 
 def count_processor_time() -> None:

@@ -10,10 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 import ratt_opt as ro
-from analysis.benchmarks.attack import SETTINGS
-from analysis.benchmarks.budgets import budget_grid
-from analysis.benchmarks.limited_view import team
-from analysis.benchmarks.networks import SHARES, network_problem
+from analysis.benchmarks.instances import SETTINGS, SHARES, budget_grid, network_problem, team
 from analysis.golden.unusual import UNUSUAL, unusual_problem
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
 from ratt_opt.setfunctions.criteria.names import CLASSES as CRITERIA

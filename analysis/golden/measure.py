@@ -12,7 +12,7 @@ from zlib import crc32
 import numpy as np
 
 import ratt_opt as ro
-from analysis.benchmarks.networks import warm_up
+from analysis.benchmarks.instances import warm_up
 from analysis.golden.corpus import CRITERIA, get_case
 from ratt_opt.errors import UndecidedError
 
