@@ -21,7 +21,7 @@ __all__ = ["DividedPlans"]
 P = TypeVar("P")
 
 
-class _Part(NamedTuple):
+class _PlansLeft(NamedTuple):
     """Some plans: none is worth more than ``-bound``; of one bound, the earlier ones go first."""
 
     bound: float
@@ -37,7 +37,7 @@ class DividedPlans(ABC, Generic[P]):
 
     def __init__(self, plans: P, upper: float, attacks: PlanAttacks, most: float = np.inf) -> None:
         self._attacks, self._budget = attacks, attacks.budget
-        self._nodes = OpenNodes([_Part(-upper, 0, plans)], most)
+        self._nodes = OpenNodes([_PlansLeft(-upper, 0, plans)], most)
         self._count, self._settled = 0, -np.inf
 
     @property
@@ -69,18 +69,18 @@ class DividedPlans(ABC, Generic[P]):
         """Return why not to divide on: the budget is spent."""
         return self._budget.stop()
 
-    def bound(self, node: _Part) -> list[tuple[float, P]] | None:
+    def bound(self, node: _PlansLeft) -> list[tuple[float, P]] | None:
         """Divide a part unless it is worth no more than the best plan known."""
         if -node.bound <= self._attacks.lower:
             return None
         self._budget.nodes += 1
         return self._divided(node.plans, -node.bound, self._budget)  # type: ignore[arg-type]
 
-    def branch(self, bounded: list[tuple[float, P]]) -> Iterator[_Part]:
+    def branch(self, bounded: list[tuple[float, P]]) -> Iterator[_PlansLeft]:
         """Return the parts of a part as nodes."""
         for bound, plans in bounded:
             self._count += 1
-            yield _Part(-bound, self._count, plans)
+            yield _PlansLeft(-bound, self._count, plans)
 
     @abstractmethod
     def _divided(self, plans: P, bound: float, budget: Budget) -> list[tuple[float, P]]:
