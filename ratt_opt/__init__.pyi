@@ -80,6 +80,7 @@ from .missions.players.attack_models import (
     PermanentFailures as PermanentFailures,
     PersistentAttacks as PersistentAttacks,
 )
+from .missions.params import MissionParams as MissionParams
 from .missions.belief import Belief as Belief
 from .scenario.sensors.model import SensorModel as SensorModel
 from .scenario.sensors.range_bearing import (
@@ -98,13 +99,18 @@ from .missions.models.targets import (
     KnownVelocity as KnownVelocity,
     TargetMotion as TargetMotion,
 )
+from .missions.players.attackers import WorstAttacker as WorstAttacker
 from .missions.players.planners import (
     DecentralisedPlanner as DecentralisedPlanner,
     MaxMinPlanner as MaxMinPlanner,
     RandomPlanner as RandomPlanner,
     RefinedPlanner as RefinedPlanner,
 )
-from .missions.replay.fit_sensor import FittedSensor as FittedSensor, fit_sensor as fit_sensor
+from .missions.replay.fit_sensor import (
+    FitParams as FitParams,
+    FittedSensor as FittedSensor,
+    fit_sensor as fit_sensor,
+)
 from .missions.replay.replay import (
     Replay as Replay,
     ReplaySettings as ReplaySettings,
@@ -161,6 +167,8 @@ from .bounds.relaxation import (
 )
 
 # == Certificates
+from .certificates.params import CertificateParams as CertificateParams, ExplanationParams as ExplanationParams
+from .certificates.verifier.limits import VerifierLimits as VerifierLimits
 from .certificates.stated_problem import problem_document as problem_document
 from .certificates.write import certify as certify
 from .certificates.certification import Certificate as Certificate

@@ -19,8 +19,10 @@ __all__ = ["changed", "check_at_least_one", "read_params"]
 P = TypeVar("P", bound="DataclassInstance")
 
 
-def read_params(path: str | Path | None, default: P) -> P:
+def read_params(path: str | Path | None, default: P, argument: str = "params") -> P:
     """Read the parameters that a file changes; all are as in ``default`` without a file.
+
+    ``argument`` : named by errors
 
     Raises
     ------
@@ -31,8 +33,8 @@ def read_params(path: str | Path | None, default: P) -> P:
     try:
         document = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError("params", f"must be a file of TOML ({error})", str(path)) from None
-    return _with(default, document, "params")
+        raise InputError(argument, f"must be a file of TOML ({error})", str(path)) from None
+    return _with(default, document, argument)
 
 
 def changed(params: DataclassInstance) -> dict[str, Any]:

@@ -36,18 +36,6 @@ if TYPE_CHECKING:
 
 __all__ = ["cover_proof"]
 
-UNIT = 1 << 14
-"""Unit of integer duals: one link that leaves a group.
-By rounding, duals of 100 robots claim less by under a hundredth of a link, and flows are short to write."""
-SEARCHED = 2_000_000
-"""Nodes of the search for duals: seconds, up to half a minute at 30 robots."""
-MOST_PARTITIONS = 200_000
-"""Nodes of the search of partitions."""
-WITH_LIMITS, SHORTER = 0.6, 0.3
-"""Shares of the seconds left for a proof with limits, and then for a shorter one without."""
-LARGEST_PROOF = 1_500_000
-"""Most nodes and numbers of flows; the verifier reads files of two million."""
-
 
 def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     """Return the record of a proof of the sets' threshold.
@@ -56,18 +44,18 @@ def cover_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     ------
     NotClosedError : no duals were found, a group is left, or a tree is too large.
     """
-    threat, plan = sets.problem.threat, sets.plan
-    duals = duals_of_all_groups(plan, sets.threshold) or _searched_duals(plan, sets)
-    robots, blinded = np.floor(duals.robots * UNIT).astype(np.int64), int(np.ceil(duals.blinded * UNIT))
-    question = Question(sets.threshold, plan.robots, robots, blinded, 0, UNIT)
-    slack = 2 * threat.alpha_c * UNIT - question.claim(threat.n_blinded)
+    threat, plan, params = sets.problem.threat, sets.plan, sets.params.covers
+    duals, unit = duals_of_all_groups(plan, sets.threshold, params) or _searched_duals(plan, sets), params.unit
+    robots, blinded = np.floor(duals.robots * unit).astype(np.int64), int(np.ceil(duals.blinded * unit))
+    question = Question(sets.threshold, plan.robots, robots, blinded, 0, unit)
+    slack = 2 * threat.alpha_c * unit - question.claim(threat.n_blinded)
     tree, lemmas = _shorter(sets, replace(question, limit=max(slack, -1)), duals.limits, max_nodes)
-    record = {**lemmas, "duals": {"link": UNIT, "robots": question.duals.tolist(), "blinded": question.blinding}}
+    record = {**lemmas, "duals": {"link": unit, "robots": question.duals.tolist(), "blinded": question.blinding}}
     record |= {"bounds": tree.bounds, "tree": tree.nodes}
     if slack < 0:
         return {"conclusion": "duals", **record}
     listed = [_listed(threat, question, *group) for group in tree.listed]
-    return {"conclusion": "cover", **record, "partition": _partition(listed, threat, slack)}
+    return {"conclusion": "cover", **record, "partition": _partition(listed, threat, slack, params.partitions)}
 
 
 def _searched_duals(plan: PricingProblem, sets: PlanSets) -> LinkDuals:
@@ -77,7 +65,7 @@ def _searched_duals(plan: PricingProblem, sets: PlanSets) -> LinkDuals:
     seconds = seconds_left()
     budget = Budget(None if seconds == np.inf else seconds)
     try:
-        answer = ThresholdDecision(plan).decide(sets.threshold, budget, SEARCHED)
+        answer = ThresholdDecision(plan).decide(sets.threshold, budget, sets.params.covers.searched)
     except OutOfBudget:
         raise NotClosedError from None
     if answer.verdict is not Threshold.REFUTED or answer.prices is None:
@@ -95,12 +83,12 @@ def _shorter(sets: PlanSets, question: Question, limits: list[Limit], max_nodes:
     if not limits:
         return _without_limits(sets, question, limits, max_nodes)
     try:
-        with limited(WITH_LIMITS * seconds_left()):
+        with limited(sets.params.covers.with_limits * seconds_left()):
             tree, lemmas = _with_limits(sets, question, limits, max_nodes)
     except (NotClosedError, UndecidedError):
         return _without_limits(sets, question, limits, max_nodes)
     nodes = len(tree.nodes) + sum(1 + len(limit["tree"]) for limit in lemmas["limits"])
-    with suppress(NotClosedError, UndecidedError), limited(SHORTER * seconds_left()):
+    with suppress(NotClosedError, UndecidedError), limited(sets.params.covers.shorter * seconds_left()):
         plain, lemma = _without_limits(sets, question, limits, min(nodes, max_nodes))
         if len(plain.nodes) + len(lemma["sets"]["tree"]) <= nodes:
             return plain, lemma
@@ -128,7 +116,7 @@ def _with_limits(sets: PlanSets, question: Question, limits: list[Limit], max_no
     while True:
         tree = group_tree(sets, question, max_nodes, limits)
         proofs: dict[Limit, dict[str, Any]] = {}
-        left = LARGEST_PROOF - len(tree.nodes) - sum(len(bound["flow"]) for bound in tree.bounds)
+        left = sets.params.covers.numbers - len(tree.nodes) - sum(len(bound["flow"]) for bound in tree.bounds)
         for robots, most in tree.used:
             with suppress(NotClosedError):
                 proof = sets_proof(sets, most + 1, max(min(left, max_nodes), 0), robots, list(proofs))
@@ -147,7 +135,7 @@ def _listed(threat: Threat, question: Question, robots: int, need: int) -> Liste
     return ListedGroup(robots, question.unit * links + question.blinding * need - duals, need, links)
 
 
-def _partition(groups: list[ListedGroup], threat: Threat, slack: int) -> list[int]:
+def _partition(groups: list[ListedGroup], threat: Threat, slack: int, max_nodes: int) -> list[int]:
     """The tree that shows that groups, as a verifier lists them, do not partition the team.
 
     Raises
@@ -167,7 +155,7 @@ def _partition(groups: list[ListedGroup], threat: Threat, slack: int) -> list[in
     while waiting:
         tick()
         left, cost, blinded, links = waiting.pop()
-        if not left or len(tree) > MOST_PARTITIONS:
+        if not left or len(tree) > max_nodes:
             raise NotClosedError
         fitting = {
             i: [group for group in having[i] if not group.robots & ~left and _fits(group, cost, blinded, links)]

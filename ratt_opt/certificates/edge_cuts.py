@@ -16,6 +16,7 @@ from ratt_opt.attack.edge_cuts.kept_links import groups_above, proof_tree
 from ratt_opt.attack.edge_cuts.listed import partition_that_keeps
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.certificates.certification import CutsCertification
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.certificates.verifier.cut_proofs import most_links_inside
 from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, VerifiedCuts, verify_cuts
 from ratt_opt.errors import InputError, ProofError, UndecidedError
@@ -30,15 +31,11 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.edge_cuts.network import CutNetwork
+    from ratt_opt.certificates.params import CertificateParams, CutProofParams
     from ratt_opt.graph.communication import CommunicationGraph, Link
     from ratt_opt.graph.threat import Threat
 
 __all__ = ["certify_cuts", "certify_size_if_possible"]
-
-LEAST_CHECKED = 1.0
-"""Seconds in which a proof is verified if its writing has taken all."""
-MOST_NUMBERS = 1_800_000
-"""Numbers of a tree at most; the verifier refuses longer files."""
 
 
 def certify_cuts(
@@ -51,6 +48,7 @@ def certify_cuts(
     protected_links: Iterable[Link] = (),
     time_limit: float | None = None,
     budget: Budget | None = None,
+    params: CertificateParams = DEFAULT,
 ) -> VerifiedCuts:
     """Write the proof of the lower end that :func:`fewest_cuts` or :func:`smallest_largest_group` found, verified.
 
@@ -60,6 +58,7 @@ def certify_cuts(
 
     ``graph``, ``weights``, ``sizes``, ``protected_links`` : as for :func:`fewest_cuts`
     ``time_limit``, ``budget`` : seconds for writing and for verifying; an outer search's budget
+    ``params`` : their ``cuts``, and the limits of the ``verifier``
 
     Raises
     ------
@@ -70,7 +69,7 @@ def certify_cuts(
     if isinstance(found, LargestGroup) and (weights, sizes) != (None, None):
         raise InputError("weights", "and sizes must be absent for a smallest largest group", "given")
     network = cut_network(graph, weights, sizes, together)
-    writer = _Writer(network, _room(network, found), own)
+    writer = _Writer(network, _room(network, found), own, params.cuts)
     try:
         proof = writer.of_size(found) if isinstance(found, LargestGroup) else writer.of_cuts(found)
     except OutOfBudget as out:
@@ -92,7 +91,7 @@ def certify_cuts(
         "size": writer.room,
         **proof,
     }
-    verified = verify_cuts(document, time_limit=max(own.seconds_left, LEAST_CHECKED))
+    verified = verify_cuts(document, time_limit=max(own.seconds_left, params.cuts.seconds), limits=params.verifier)
     text = json.dumps(document, separators=(",", ":")) + "\n"
     write_atomically(path, lambda file: file.write_text(text, encoding="utf-8"))
     return verified
@@ -129,8 +128,8 @@ def _room(network: CutNetwork, found: FewestCuts | LargestGroup) -> int:
 class _Writer:
     """Proofs that links must be cut for groups of at most ``room``."""
 
-    def __init__(self, network: CutNetwork, room: int, budget: Budget) -> None:
-        self.network, self.room, self._budget = network, room, budget
+    def __init__(self, network: CutNetwork, room: int, budget: Budget, params: CutProofParams) -> None:
+        self.network, self.room, self._budget, self._params = network, room, budget, params
 
     def of_cuts(self, found: FewestCuts) -> dict[str, Any]:
         """A proof of the lower end, or of what prices prove."""
@@ -208,9 +207,9 @@ class _Writer:
 
         Raises ``ProofError`` : it is too long.
         """
-        tree = proof_tree(self.network, prices, self.room, MOST_NUMBERS, self._budget)
+        tree = proof_tree(self.network, prices, self.room, self._params.numbers, self._budget)
         if tree is None:
-            raise ProofError(f"the tree that proves the prices has more than {MOST_NUMBERS:,} numbers")
+            raise ProofError(f"the tree that proves the prices has more than {self._params.numbers:,} numbers")
         return {"claim": self._by_prices(prices), **self._with_tree(prices, tree)}
 
     def _with_tree(self, prices: IntArray, tree: IntArray) -> dict[str, Any]:
@@ -225,7 +224,7 @@ class _Writer:
         if room < 0 or not groups.is_complete:
             return None
         answer = partition_that_keeps(network, groups.groups, prices, need, self._budget)
-        tree = proof_tree(network, prices, self.room, MOST_NUMBERS, self._budget, -room - 1)
+        tree = proof_tree(network, prices, self.room, self._params.numbers, self._budget, -room - 1)
         if answer.label is not None or tree is None:
             return None
         levels = [

@@ -24,12 +24,6 @@ __all__ = ["GroupTree", "group_tree", "sets_proof"]
 
 Limit = tuple[int, int]
 """A set of robots (bit mask), and the most of these that sense in a group below the threshold."""
-CASES = 100
-"""Cases between two looks at the clock: some hundredths of a second."""
-CRITERIA, MOST_CRITERIA = 4_000_000, 256_000_000
-"""Criteria of single targets for a tree over sets: between two looks at the clock, a tenth of a second; and at most."""
-MOST_FLOWS, MOST_LISTED, FLOW_NUMBERS = 12_000, 20_000, 1_000_000
-"""Flows and listed groups of a tree; numbers in all of its flows, as the verifier reads files of two million."""
 BRANCHES, LEAVES = ("sense", "inside", "sensing", "blinded", "limit"), ("worth", "copies", "budget", "flow", "listed")
 """Nodes by their numbers in the compiled code."""
 NUMBERED = (*BRANCHES, "flow")
@@ -116,13 +110,14 @@ def sets_proof(
     members = np.array([among is None or among >> i & 1 for i in range(plan.robots)], np.int8)
     rows, depth = np.zeros(plan.robots + 1, RowRecord), np.full(1, -1, np.int32)
     places = address(members), address(rows), address(depth)
-    effort, looked, code = CRITERIA // sets.objective.n_targets, 0, PAUSED
+    params, looked, code = sets.params.trees, 0, PAUSED
+    effort = params.criteria // sets.objective.n_targets
     with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody) as search:
-        while code == PAUSED and looked < MOST_CRITERIA:
+        while code == PAUSED and looked < params.most_criteria:
             tick()
             tell(COVERING, trees.record.count)
             code = loops.grow_sets_tree(search.handle, trees.record, *places, size, effort)
-            looked += CRITERIA
+            looked += params.criteria
     if code != FINISHED:
         raise NotClosedError
     return {"size": size, "tree": trees.named(list(range(len(limits))))}
@@ -135,17 +130,17 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Seque
     ------
     NotClosedError : a group is neither, or the tree is too large.
     """
-    plan = sets.plan
+    plan, params = sets.plan, sets.params.trees
     averages, links = sets.objective.verifier_averages, len(plan.threat.graph.links)
-    flows = min(MOST_FLOWS, FLOW_NUMBERS // max(links, 1))
-    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=MOST_LISTED, limits=limits)
+    flows = min(params.flows, params.flow_numbers // max(links, 1))
+    trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=params.listed, limits=limits)
     first = np.argsort(-question.duals, kind="stable").astype(np.int64)
     record, code = trees.record, PAUSED
     with GroupSearch(plan, question, first) as search:
         while code == PAUSED:
             tick()
             tell(COVERING, record.count)
-            code = loops.grow_group_tree(search.handle, record, CASES)
+            code = loops.grow_group_tree(search.handle, record, params.cases)
     if code != FINISHED:
         raise NotClosedError
     masks = [sum(1 << int(i) for i in np.flatnonzero(row)) for row in trees.listed[: record.n_listed]]

@@ -19,16 +19,9 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
     from ratt_opt.attack.thresholds.pricing import PricingProblem
     from ratt_opt.certificates.group_tree import Limit
+    from ratt_opt.certificates.params import CoverProofParams
 
 __all__ = ["LinkDuals", "duals_of_all_groups"]
-
-SECONDS, SHARE = 20.0, 0.3
-"""Seconds for the list at most, and share of the remaining seconds."""
-MOST_LISTED = 1_000_000
-"""Groups in the list."""
-MARGIN = 0.02
-"""Links that the duals claim beyond the budget, counted from both sides: what they could claim besides is slack that
-every group has. Measured on fourteen networks of 24 robots: trees are shorter by a tenth than without slack."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +36,13 @@ class LinkDuals:
     limits: list[Limit]
 
 
-def duals_of_all_groups(plan: PricingProblem, threshold: float) -> LinkDuals | None:
+def duals_of_all_groups(plan: PricingProblem, threshold: float, params: CoverProofParams) -> LinkDuals | None:
     """Return the duals; ``None`` if there are too many groups."""
     if plan.robots > LARGEST_MASK or plan.threat.alpha_c > MOST_CUT:
         return None
-    budget, groups, threat = Budget(min(SECONDS, SHARE * seconds_left())), groups_of(plan.threat), plan.threat
-    if not groups.has_listed(MOST_LISTED, budget):
+    budget = Budget(min(params.seconds, params.share * seconds_left()))
+    groups, threat = groups_of(plan.threat), plan.threat
+    if not groups.has_listed(params.listed, budget):
         return None
     try:
         columns = ListedColumns(threat, plan.team, groups, threshold)
@@ -57,7 +51,7 @@ def duals_of_all_groups(plan: PricingProblem, threshold: float) -> LinkDuals | N
         return None
     robots, blinded = found.robots / UNIT, found.blinding / UNIT
     claim = float(robots.sum()) - threat.n_blinded * blinded
-    scale = min(1.0, (2 * threat.alpha_c + MARGIN) / claim) if claim > 0 else 1.0
+    scale = min(1.0, (2 * threat.alpha_c + params.margin) / claim) if claim > 0 else 1.0
     protected = mask_of(threat.protected_robots)
     limits = [limit for limit in columns.limits if not limit[0] & protected]
     return LinkDuals(robots * scale, blinded * scale, limits)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.group_tree import sets_proof
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.verifier.work import limited, seconds_left
 from ratt_opt.errors import UndecidedError
@@ -20,47 +21,40 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.certificates.params import CertificateParams
     from ratt_opt.problem import Problem
 
     Way = Callable[[PlanSets, int], dict[str, Any]]
 
 __all__ = ["ENUMERATED", "lower_proof", "weaker_lower_proof"]
 
-LARGEST_TREE = 300_000
-"""Most nodes of a tree."""
-SHARE_OF_OTHERS = 0.4
-"""Share of the remaining seconds for each way but the last."""
-COVERS_FIRST = 16
-"""Robots up to which duals and covers come first on dense graphs, too. Of 48 teams of 8 to 16 robots they prove all, in
-a tenth of the time; sizes leave eight open, and the others have shorter proofs (a third of the bytes at 16 robots)."""
-LOWERED = (0.01, 0.03, 0.1, 0.3)
-"""Shares of a threshold by which it is lowered, in turn, until it is proved."""
 ENUMERATED: dict[str, Any] = {"conclusion": "enumerated"}
 """Record that the outcomes were enumerated in floating point: not a proof."""
 
 
-def lower_proof(problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE) -> Any:
+def lower_proof(problem: Problem, elements: IntArray, threshold: float, params: CertificateParams = DEFAULT) -> Any:
     """Return the record of a proof that the plan's worst-case value is at least ``threshold``.
 
     Parameters
     ----------
     elements : (N,) the plan
     threshold : the value to prove [unit of the objective], a little below the plan's worst case
-    max_nodes : node limit of each tree that is tried
+    params : ways, limits of trees and shares of the time
 
     Returns
     -------
     ``forced`` if the complete graph allows it; ``duals`` or ``cover``; or ``sizes``, which comes first if most links
     are there; else ``ENUMERATED``.
     """
-    by_sizes = _is_dense(problem) and problem.n_robots > COVERS_FIRST
+    own = params.lower
+    by_sizes = _is_dense(problem, own.dense) and problem.n_robots > own.covers_first
     ways: list[Way] = [group_size_proof, cover_proof] if by_sizes else [cover_proof, group_size_proof]
     if problem.communication.is_complete:
         ways = [_forced_proof, cover_proof]
     for way in ways:
         try:
-            with limited(seconds_left() * (1.0 if way is ways[-1] else SHARE_OF_OTHERS)):
-                return way(PlanSets(problem, elements, threshold), max_nodes)
+            with limited(seconds_left() * (1.0 if way is ways[-1] else own.share_of_others)):
+                return way(PlanSets(problem, elements, threshold, params), own.nodes)
         except (NotClosedError, UndecidedError):
             continue
     return ENUMERATED
@@ -73,23 +67,24 @@ def _forced_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
 
 
 def weaker_lower_proof(
-    problem: Problem, elements: IntArray, threshold: float, *, max_nodes: int = LARGEST_TREE
+    problem: Problem, elements: IntArray, threshold: float, params: CertificateParams = DEFAULT
 ) -> tuple[float, Any]:
-    """A threshold that is lower by one of ``LOWERED``, with its proof by sizes if most links are there, or by covers.
+    """A threshold that is a little lower (``params.lower.lowered``), with its proof by sizes or by covers.
 
     Parameters are those of :func:`lower_proof`; if none is proved, the threshold itself comes with ``ENUMERATED``.
     """
-    ways: list[Way] = [*([group_size_proof] if _is_dense(problem) else []), cover_proof]
-    for share, way in product(LOWERED, ways) if not problem.communication.is_complete else ():
+    own = params.lower
+    ways: list[Way] = [*([group_size_proof] if _is_dense(problem, own.dense) else []), cover_proof]
+    for share, way in product(own.lowered, ways) if not problem.communication.is_complete else ():
         lower = threshold * (1 - share)
         try:
-            with limited(seconds_left() * SHARE_OF_OTHERS):
-                return lower, way(PlanSets(problem, elements, lower), max_nodes)
+            with limited(seconds_left() * own.share_of_others):
+                return lower, way(PlanSets(problem, elements, lower, params), own.nodes)
         except (NotClosedError, UndecidedError):
             continue
     return threshold, ENUMERATED
 
 
-def _is_dense(problem: Problem) -> bool:
-    """Tell whether the graph has at least three fifths of all links."""
-    return 10 * len(problem.communication.links) >= 3 * problem.n_robots * (problem.n_robots - 1)
+def _is_dense(problem: Problem, share: float) -> bool:
+    """Tell whether the graph has at least this share of all links."""
+    return 2 * len(problem.communication.links) >= share * problem.n_robots * (problem.n_robots - 1)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from flint import ctx, fmpq
 
-from ratt_opt._rounding import down
+from ratt_opt._rounding import down, up
 from ratt_opt.certificates.verifier.cases import Cases, is_short, mask_of, read_node, robots_of
 from ratt_opt.certificates.verifier.duals import Duals
 from ratt_opt.certificates.verifier.sizes import possible_groups
@@ -16,16 +17,13 @@ from ratt_opt.certificates.verifier.worth import Worth
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from ratt_opt.certificates.params import ExplanationParams
     from ratt_opt.certificates.verifier.cases import GroupCase
     from ratt_opt.certificates.verifier.statement import Statement
     from ratt_opt.certificates.verifier.worth import Known
 
-__all__ = ["MOST_LINES", "LowerStory", "listing", "spans"]
+__all__ = ["LowerStory", "Wording"]
 
-MOST_LINES = 200
-"""Lines of one tree at most."""
-DIGITS = 6
-BITS = 96
 QUESTIONS = {
     "sense": ("does robot {} sense in the group?", "yes", "no"),
     "inside": ("is robot {} in the group?", "yes", "no"),
@@ -46,10 +44,46 @@ CONCLUSIONS = {
 }
 
 
+class Wording:
+    """Lists and values as both stories word them, cut short after ``params.lines``."""
+
+    def __init__(self, params: ExplanationParams) -> None:
+        self.params = params
+
+    def listing(self, numbers: Iterable[int]) -> str:
+        """Numbers with commas."""
+        every, most = list(numbers), self.params.lines
+        shown = [str(number) for number in every[:most]]
+        return ", ".join([*shown, "..."] if len(every) > most else shown)
+
+    def spans(self, numbers: Iterable[int]) -> str:
+        """Ascending numbers with commas, runs of three or more as ``first to last``."""
+        runs: list[list[int]] = []
+        for number in numbers:
+            if runs and number == runs[-1][-1] + 1:
+                runs[-1].append(number)
+            else:
+                runs.append([number])
+        most = self.params.lines
+        texts = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs[:most])
+        return ", ".join([*texts, "..."] if len(runs) > most else texts)
+
+    def up(self, value: Any) -> str:
+        """A rational or the upper end of a ball, rounded up."""
+        exact = Fraction(int(value.p), int(value.q)) if isinstance(value, fmpq) else Fraction(float(value.upper()))
+        return up(exact, self.params.digits) if exact else "0"
+
+    def down(self, value: Any) -> str:
+        """A rational or the lower end of a ball, rounded down."""
+        exact = Fraction(int(value.p), int(value.q)) if isinstance(value, fmpq) else Fraction(float(value.lower()))
+        return down(exact, self.params.digits) if exact else "0"
+
+
 class LowerStory:
     """Explanation of one lower proof; cases, worths and costs are computed by the verifier's classes."""
 
-    def __init__(self, about: Statement, lower: fmpq) -> None:
+    def __init__(self, about: Statement, lower: fmpq, wording: Wording) -> None:
+        self._params, self._listing = wording.params, wording.listing
         self.about, self.worth = about, Worth(about, lower)
         self.cases = Cases(about, self.worth)
         self._duals: Duals | None = None
@@ -61,7 +95,7 @@ class LowerStory:
             self._duals = Duals(self.cases, lower["duals"])
             self._duals.read_bounds(lower["bounds"])
         told = {"size": lower.get("sets", {}).get("size"), "forms": len(lower.get("forms", []))}
-        told |= {"slack": self._slack(), "partition": listing(lower.get("partition", []))}
+        told |= {"slack": self._slack(), "partition": self._listing(lower.get("partition", []))}
         lines = [*self._prices(), CONCLUSIONS[conclusion].format(**told)]
         if conclusion == "enumerated":
             return lines
@@ -82,7 +116,7 @@ class LowerStory:
         if size > len(robots):
             has = f"the team has {len(robots)} robots" if len(robots) == self.about.n else f"there are {len(robots)}"
             return [f"{head}Nothing is said of sets of all robots: {has}, so no set of {size} exists."]
-        some = "" if len(robots) == self.about.n else f" of {listing(robots)}"
+        some = "" if len(robots) == self.about.n else f" of {self._listing(robots)}"
         everyone = self.cases.everyone
         root = replace(self.cases.groups(size), may_sense=mask_of(robots), may_blind=0, least=size, low=0, high=0)
         root = replace(root, may_leave=everyone)
@@ -108,7 +142,7 @@ class LowerStory:
         duals = self._duals
         return [
             f"Let a group cost {duals.link} for each link that leaves it and {duals.blinded} for each of its blinded "
-            f"robots, less {listing(duals.robot)} for the robots 0 to {self.about.n - 1} that it has."
+            f"robots, less {self._listing(duals.robot)} for the robots 0 to {self.about.n - 1} that it has."
         ]
 
     def _slack(self) -> str:
@@ -121,7 +155,7 @@ class LowerStory:
     def _tree(self, nodes: list[Any], root: GroupCase, *, of_sets: bool = False) -> list[str]:
         lines: list[str] = []
         waiting = [(1, "", root)]
-        for node in nodes[:MOST_LINES]:
+        for node in nodes[: self._params.lines]:
             depth, answer, case = waiting.pop()
             name, number = read_node(node)
             margin = "  " * depth + answer
@@ -136,20 +170,20 @@ class LowerStory:
                 waiting.append((depth + 1, "so: ", narrowed))
             else:
                 lines.append(margin + self._leaf(name, number, case, of_sets=of_sets))
-        if len(nodes) > MOST_LINES:
-            lines.append(f"  ... and {len(nodes) - MOST_LINES:,} nodes more")
+        if len(nodes) > self._params.lines:
+            lines.append(f"  ... and {len(nodes) - self._params.lines:,} nodes more")
         return lines
 
     def _limit(self, number: object, case: GroupCase, narrowed: GroupCase) -> str:
         assert isinstance(number, int)
         robots, most = self.cases.limits[number]
         blinded = f", so at least {narrowed.low} are blinded" if narrowed.low > max(case.low, 0) else ""
-        return f"by limit {number} at most {most} of robots {listing(robots_of(robots))} sense in it{blinded}"
+        return f"by limit {number} at most {most} of robots {self._listing(robots_of(robots))} sense in it{blinded}"
 
     def _leaf(self, name: str, number: object, case: GroupCase, *, of_sets: bool) -> str:
         if name == "worth":
             worth = self._number(case.known)
-            return f"robots {listing(robots_of(case.sensing))} are worth {worth or 'at least the claim'}"
+            return f"robots {self._listing(robots_of(case.sensing))} are worth {worth or 'at least the claim'}"
         if name == "copies":
             return self._copies(case)
         if name == "budget":
@@ -160,7 +194,7 @@ class LowerStory:
             least = self._duals.least(case, self._duals.bounds[number])
             return f"such a group costs at least {least}, by bound {number}"
         if name == "listed":
-            return f"this is the group of robots {listing(robots_of(case.inside))}; it is listed"
+            return f"this is the group of robots {self._listing(robots_of(case.inside))}; it is listed"
         return f"such a group costs more than the largest one may, by bound {number}"
 
     def _copies(self, case: GroupCase) -> str:
@@ -168,15 +202,15 @@ class LowerStory:
         among, count = case.may_sense, case.least - case.sensing.bit_count()
         if count <= 0:
             among, count = among & case.inside, (case.inside & ~case.sensing).bit_count() - case.high
-        sure = f"with robots {listing(robots_of(case.sensing))}, " if case.sensing else ""
+        sure = f"with robots {self._listing(robots_of(case.sensing))}, " if case.sensing else ""
         values = [(self._copied(case.known, robot, count), robot) for robot in robots_of(among)]
-        head = f"{count}{' more' if case.sensing else ''} of robots {listing(robots_of(among))} sense"
+        head = f"{count}{' more' if case.sensing else ''} of robots {self._listing(robots_of(among))} sense"
         if any(value is None for value, _ in values):
             return f"{head}; {sure}{count} copies of any of them are worth at least the claim"
         known = sorted((value, robot) for value, robot in values if value is not None)
-        average = down(sum(value for value, _ in known[:count]) / count, DIGITS)
+        average = down(sum(value for value, _ in known[:count]) / count, self._params.digits)
         shown = ", ".join(
-            f"{down(value, DIGITS)} (robot {robot})" for value, robot in sorted(known, key=lambda p: p[1])
+            f"{down(value, self._params.digits)} (robot {robot})" for value, robot in sorted(known, key=lambda p: p[1])
         )
         if count == 1:
             return f"{head}; {sure}it is worth {shown}"
@@ -189,21 +223,21 @@ class LowerStory:
 
     def _number(self, known: Known) -> str | None:
         value = self._value(known)
-        return None if value is None else down(value, DIGITS)
+        return None if value is None else down(value, self._params.digits)
 
     def _value(self, known: Known) -> float | None:
         """The worth of a set of robots, rounded down; ``None`` if the verifier decides without it."""
         if self.about.objective == "maxeig" and not (self.about.d == 2 and self.about.is_whole):
             return None
-        with ctx.workprec(BITS):
-            found = self.worth.value(known, BITS)
+        with ctx.workprec(self._params.bits):
+            found = self.worth.value(known, self._params.bits)
         return int(found.p) / int(found.q) if isinstance(found, fmpq) else float(found)
 
     def _no_set(self, case: GroupCase) -> str:
         """Say why a set of the case need not be looked at."""
         can = case.sensing | case.may_sense
         if is_short(case):
-            left = listing(robots_of(can)) or "none"
+            left = self._listing(robots_of(can)) or "none"
             return f"there is no such set: {case.least} must sense, and only robots {left} can"
         return f"{case.least} that sense are more than a group below the claim has ({case.most} at most)"
 
@@ -222,25 +256,6 @@ class LowerStory:
             (room < case.least + case.low, f"it has {room} robots at most, and needs {case.least + case.low}"),
             (is_tied, "a protected link leaves it"),
             (lost > self.about.alpha_c, f"{lost} links leave it, and {self.about.alpha_c} can be cut"),
-            (True, f"robots {listing(robots_of(inside))} are not connected in it"),
+            (True, f"robots {self._listing(robots_of(inside))} are not connected in it"),
         )
         return next(text for holds, text in reasons if holds)
-
-
-def listing(numbers: Iterable[int]) -> str:
-    """Numbers with commas, cut short after ``MOST_LINES``."""
-    every = list(numbers)
-    shown = [str(number) for number in every[:MOST_LINES]]
-    return ", ".join([*shown, "..."] if len(every) > MOST_LINES else shown)
-
-
-def spans(numbers: Iterable[int]) -> str:
-    """Ascending numbers with commas, runs of three or more as ``first to last``."""
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    texts = (f"{run[0]} to {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs[:MOST_LINES])
-    return ", ".join([*texts, "..."] if len(runs) > MOST_LINES else texts)

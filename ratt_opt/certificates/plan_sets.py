@@ -10,17 +10,19 @@ import numpy as np
 
 from ratt_opt.attack.team import LARGEST_DIMENSION, Links, Team
 from ratt_opt.attack.thresholds.pricing import PricingProblem
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
 from ratt_opt.setfunctions.information import triangles
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.certificates.params import CertificateParams
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["COVERING", "NotClosedError", "PlanSets"]
 
-NEGLIGIBLE = 2.0**-27
+NEGLIGIBLE = np.sqrt(np.finfo(np.float64).eps) / 2
 """Deviation of a coordinate that does not count, beside those that do: less than rounding, as it is squared."""
 COVERING = "covering all attacks"
 """Progress message while a cover is built."""
@@ -37,6 +39,7 @@ class PlanSets:
     problem: Problem
     elements: IntArray
     threshold: float
+    params: CertificateParams = DEFAULT
 
     @property
     def objective(self) -> InformationObjective:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.certificates.stated_problem import statement_of
 from ratt_opt.certificates.target_trees import target_trees
 from ratt_opt.certificates.verifier import target_lemmas as checked
@@ -20,30 +21,22 @@ from ratt_opt.solvers.maxmin.proof import TargetLemma
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.certificates.params import CertificateParams
     from ratt_opt.certificates.target_trees import TargetTree
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.proof import TangentCut
 
 __all__ = ["StatedInequalities", "round_up", "shortened"]
 
-DIGITS = 9
-"""Digits kept of a Fenchel point: any point is valid, and the bound changes by the square of its error."""
-LEMMA_DIGITS = 12
-"""Digits kept of points and scores of single targets: a leaf of a lemma bounds many sets, most beside the point."""
-LARGEST_CONDITION = 1e6
-"""Largest condition of the matrices whose points are shortened: with more, so few digits could leave one that is not
-positive definite."""
 SLACK = fmpq(1, 2**60)
 """Added to constants of which only a ball is known, so that checkers of fewer bits can decide them, too."""
-PRECISION = 256
-"""Bits of balls around the constants that trees prove."""
 
 
 class StatedInequalities:
     """Inequalities of a proof's rows, each stated once; tangents are counted first, lemmas behind them."""
 
-    def __init__(self, problem: Problem) -> None:
-        self._problem, self._objective = problem, problem.information_objective
+    def __init__(self, problem: Problem, params: CertificateParams = DEFAULT) -> None:
+        self._problem, self._objective, self._params = problem, problem.information_objective, params
         self._tangents: dict[tuple[int, bytes], int] = {}
         self._stated: list[Any] = []
         self._lemmas: dict[tuple[int, float, bytes], int] = {}
@@ -93,8 +86,9 @@ class StatedInequalities:
         if key not in self._tangents:
             fenchel = self._objective.of_target(target).fenchel_point(point[None], 0)
             touch = fenchel[1:] if self._objective.is_least_of_targets else fenchel
+            digits = self._params.points.lemma_digits
             self._tangents[key] = len(self._stated)
-            self._stated.append([target, *shortened(touch, point, LEMMA_DIGITS)])
+            self._stated.append([target, *shortened(touch, point, digits, self._params.points.condition)])
         return self._tangents[key]
 
     def _lemma(self, lemma: TargetLemma) -> int:
@@ -118,14 +112,13 @@ class StatedInequalities:
         """The lemmas with their trees, and the least constants that these prove."""
         if not self._proved:
             return []
-        lemmas = [
-            replace(given, scores=np.array(_short(given.scores.tolist(), LEMMA_DIGITS))) for given in self._proved
-        ]
-        grown = target_trees(self._problem, lemmas)
+        digits = self._params.points.lemma_digits
+        lemmas = [replace(given, scores=np.array(_short(given.scores.tolist(), digits))) for given in self._proved]
+        grown = target_trees(self._problem, lemmas, self._params.lemmas)
         trees = [self._nodes(lemma.target, tree) for lemma, tree in zip(lemmas, grown, strict=True)]
         about = statement_of(self._problem)
         found = []
-        with ctx.workprec(PRECISION):
+        with ctx.workprec(self._params.points.precision):
             tangents, marginals = read_tangents(about, self._stated), cache(partial(MarginalBounds, about))
             for lemma, tree in zip(lemmas, trees, strict=True):
                 elements = np.flatnonzero(lemma.scores).tolist()
@@ -160,9 +153,9 @@ class StatedInequalities:
         return nodes
 
 
-def shortened(touch: Any, point: FloatArray, digits: int = DIGITS) -> Any:
+def shortened(touch: Any, point: FloatArray, digits: int, condition: float) -> Any:
     """Shorten the digits of a Fenchel point (nested lists) of well conditioned information ``point`` (..., d, d)."""
-    return touch if np.linalg.cond(point).max() > LARGEST_CONDITION else _short(touch, digits)
+    return touch if np.linalg.cond(point).max() > condition else _short(touch, digits)
 
 
 def _short(value: Any, digits: int) -> Any:

@@ -81,13 +81,10 @@ class _OpenCase:
     bound: float
 
 
-def target_trees(
-    problem: Problem, lemmas: Sequence[TargetLemma], params: TargetTreeParams | None = None
-) -> list[TargetTree]:
+def target_trees(problem: Problem, lemmas: Sequence[TargetLemma], params: TargetTreeParams) -> list[TargetTree]:
     """Return a tree for each lemma; where its constant is too low, or limits are met, it proves a larger one only."""
     if not lemmas:
         return []
-    params = params or TargetTreeParams()
     if not problem.information_objective.is_submodular:
         return _TargetTrees(problem, lemmas, params).grown()[0]
     trees, closed = _TargetTrees(problem, lemmas, replace(params, nodes=min(params.plain, params.nodes))).grown()

@@ -6,21 +6,26 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.certificates.stated_inequalities import StatedInequalities, shortened
 from ratt_opt.solvers.maxmin.proof import CoverLeaf, ElementBranch, Leaf, MarginalLeaf, UpperProof
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.certificates.params import CertificateParams, PointParams
     from ratt_opt.problem import Attack, Problem
     from ratt_opt.solvers.maxmin.proof import Cover, Node, TangentCut
 
 __all__ = ["upper_record"]
 
 
-def upper_record(problem: Problem, proof: UpperProof, upper: float = np.inf) -> dict[str, Any]:
+def upper_record(
+    problem: Problem, proof: UpperProof, upper: float = np.inf, params: CertificateParams = DEFAULT
+) -> dict[str, Any]:
     """Return the record; attacks, points, cuts and covers that no leaf weighs are left out, and equal ones pooled.
 
     ``upper`` : the end that the proof shows, if it relies on the spacing of values
+    ``params`` : digits of points, and trees of single targets
 
     Raises
     ------
@@ -30,7 +35,7 @@ def upper_record(problem: Problem, proof: UpperProof, upper: float = np.inf) -> 
     covers = sorted(
         {k for node in proof.tree if isinstance(node, CoverLeaf) for k, _ in _weighed(node.covers, node.weights)}
     )
-    pool, inequalities = _StatedParts(problem), StatedInequalities(problem)
+    pool, inequalities = _StatedParts(problem, params.points), StatedInequalities(problem, params)
     used.sort(key=lambda k: (proof.cuts[k].by_target, k))  # rows are counted behind cuts
     writer = _Nodes(
         pool,
@@ -56,8 +61,8 @@ def _weighed(numbers: tuple[int, ...], weights: tuple[float, ...]) -> list[tuple
 class _StatedParts:
     """Attacks and Fenchel points, each stated once and counted as they are met."""
 
-    def __init__(self, problem: Problem) -> None:
-        self._problem, self._objective = problem, problem.information_objective
+    def __init__(self, problem: Problem, params: PointParams) -> None:
+        self._problem, self._objective, self._params = problem, problem.information_objective, params
         self._attacks: dict[Attack, int] = {}
         self._groups: dict[Attack, list[tuple[int, ...]]] = {}
         self._points: dict[tuple[bytes, int | None], tuple[int, Any]] = {}
@@ -76,7 +81,10 @@ class _StatedParts:
         key = point.tobytes(), target
         if key not in self._points:
             fenchel = self._objective.fenchel_point(point, target)
-            self._points[key] = len(self._points), shortened(fenchel, point)
+            self._points[key] = (
+                len(self._points),
+                shortened(fenchel, point, self._params.digits, self._params.condition),
+            )
         return self._points[key][0]
 
     def place(self, attack: Attack, cut: TangentCut) -> list[int]:

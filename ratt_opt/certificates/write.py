@@ -12,14 +12,16 @@ from ratt_opt._files import write_atomically
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.certification import NOT_ASKED_FOR, Certificate, Certification
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.certificates.stated_inequalities import round_up
 from ratt_opt.certificates.stated_problem import is_certified, prior_range_of, problem_document
 from ratt_opt.certificates.upper import upper_record
+from ratt_opt.certificates.verifier.limits import SECONDS, within
 from ratt_opt.certificates.verifier.reading import FORMAT, VERSION
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import upper_bounds
 from ratt_opt.certificates.verifier.verify import verify_certificate
-from ratt_opt.certificates.verifier.work import SECONDS, limited, seconds_left, tick, watched
+from ratt_opt.certificates.verifier.work import limited, seconds_left, tick, watched
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.running.progress import Step
 from ratt_opt.scenario.problem_record import ProblemRecord
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt._validation import IntArray
+    from ratt_opt.certificates.params import CertificateParams
     from ratt_opt.certificates.verifier.verified import Verified
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.result import MaxMinResult
@@ -39,22 +42,15 @@ __all__ = [
     "write_certificate",
 ]
 
-SHAVES = (0.0, 1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11)
-"""Relative amounts by which a float lower bound is lowered, in turn, until exact arithmetic proves it."""
-
-LARGEST_SHAVE, ROUNDINGS = SHAVES[-1], 16
-"""Least ratio of the largest shave to the error of the objective's values."""
-LOWER_SHARE = 0.4
-"""Share of the seconds left for the search of a cover of all attacks; verifying takes about as long again."""
-CHECKED_SHARE = 0.7
-"""Share of them, less the reserve, for verifying one proof; if that does not end, something less is proved."""
-RESERVED, LEAST_RESERVED = 1.5, 0.1
-"""Seconds kept from verifying both ends: relative to those of bounding the upper end, and in addition. If verifying
-does not end, the file is verified with the upper end alone."""
-
 
 def certify_if_possible(
-    problem: Problem, result: MaxMinResult, path: str | Path | None, budget: Budget | None = None, source: object = None
+    problem: Problem,
+    result: MaxMinResult,
+    path: str | Path | None,
+    budget: Budget | None = None,
+    *,
+    source: object = None,
+    params: CertificateParams = DEFAULT,
 ) -> Certification:
     """:func:`certify`, or why it would refuse this result; ``path`` is ``None`` if no certificate is wanted.
 
@@ -71,7 +67,7 @@ def certify_if_possible(
     if result.proof is None:
         return Certification(why_not="the best plan was enumerated, which leaves no proof")
     try:
-        return Certification(certificate=certify(problem, result, path, budget=budget, source=source))
+        return Certification(certificate=certify(problem, result, path, budget=budget, source=source, params=params))
     except (InputError, UndecidedError, MemoryError) as error:
         reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
         return Certification(why_not=f"could not be made: {reason}", final=False)
@@ -85,6 +81,7 @@ def certify(
     time_limit: float | None = None,
     budget: Budget | None = None,
     source: object = None,
+    params: CertificateParams = DEFAULT,
 ) -> Certificate:
     """Write the proof of a ``solve_maxmin`` result as a file that stands without the solver.
 
@@ -101,6 +98,7 @@ def certify(
     time_limit : seconds, verification included; unlimited by default
     budget : an outer search's budget: its seconds count too
     source : the scenario or information that the problem was made from, if it is known: its SHA-256 is stated
+    params : how proofs are found and shortened, and the limits within which the file is verified
 
     Raises
     ------
@@ -111,9 +109,9 @@ def certify(
     if result.proof is None:
         raise InputError("result", "must carry a proof (from solve_maxmin)", result.stop)
     own = Budget.inside(budget, time_limit)
-    with limited(own.seconds_left):
+    with within(params.verifier), limited(own.seconds_left):
         tick()
-        record = upper_record(problem, result.proof, result.upper)
+        record = upper_record(problem, result.proof, result.upper, params)
         return write_certificate(
             problem,
             result.elements,
@@ -122,6 +120,7 @@ def certify(
             upper_part=record,
             path=path,
             source=source,
+            params=params,
         )
 
 
@@ -134,6 +133,7 @@ def write_certificate(
     upper_part: dict[str, Any],
     path: str | Path,
     source: object = None,
+    params: CertificateParams = DEFAULT,
 ) -> Certificate:
     """Write a certificate of the bracket, verify the file, and say how far its claim had to move.
 
@@ -142,7 +142,7 @@ def write_certificate(
     elements : (N,) the plan
     lower, upper : the bracket as computed in floating point [unit of the objective]
     upper_part : the record of the upper proof
-    source : as for :func:`certify`
+    source, params : as for :func:`certify`
 
     Raises
     ------
@@ -153,11 +153,14 @@ def write_certificate(
         record, plan = problem_document(problem), problem.check_plan(elements).tolist()
         prior_range = prior_range_of(problem, record, plan)
         began = monotonic()
-        high = max(float(upper), _proved_upper(Statement(record, plan, prior_range), upper_part), 0.0)
-        reserve = RESERVED * (monotonic() - began) + LEAST_RESERVED
+        high = max(
+            float(upper), _proved_upper(Statement(record, plan, prior_range), upper_part, params.points.precision), 0.0
+        )
+        own = params.writing
+        reserve = own.reserved * (monotonic() - began) + own.least_reserved
         origin = {"made_from": source.digest} if isinstance(source, ProblemRecord) else {}
         undecided: object = None
-        for low, lower_part in _lower_claims(problem, elements, float(min(lower, high))):
+        for low, lower_part in _lower_claims(problem, elements, float(min(lower, high)), params):
             if lower_part is undecided:
                 continue
             document = {
@@ -173,7 +176,7 @@ def write_certificate(
             }
             is_last = lower_part is ENUMERATED
             try:
-                with limited(seconds_left() if is_last else CHECKED_SHARE * (seconds_left() - reserve)):
+                with limited(seconds_left() if is_last else own.checked_share * (seconds_left() - reserve)):
                     return _write_verified(document, path, lower - low, high - upper)
             except ProofError as error:
                 if is_last:
@@ -201,25 +204,30 @@ def _compact(value: object) -> str:
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
-def _proved_upper(about: Statement, upper_part: dict[str, Any]) -> float:
+def _proved_upper(about: Statement, upper_part: dict[str, Any], precision: int) -> float:
     """Smallest float that the verifier can prove as an upper bound from this proof."""
-    with ctx.workprec(256):
+    with ctx.workprec(precision):
         return max((round_up(bound) for bound in upper_bounds(about, upper_part)), default=0.0)
 
 
-def _lower_claims(problem: Problem, elements: IntArray, lower: float) -> Iterator[tuple[float, dict[str, Any]]]:
+def _lower_claims(
+    problem: Problem, elements: IntArray, lower: float, params: CertificateParams
+) -> Iterator[tuple[float, dict[str, Any]]]:
     """Floats at or a little below ``lower`` with a proof; then some hundredths below; last ``lower`` with a word."""
     # Values far below the prior's criterion are differences of larger numbers: no share of them covers their rounding.
-    rounding = ROUNDINGS * problem.information_objective.rounding / LARGEST_SHAVE
+    own, largest = params.writing, max(params.writing.shaves)
+    rounding = own.roundings * problem.information_objective.rounding / (largest or 1.0)
     scale = max(abs(lower), abs(problem.objective(elements)), rounding)
-    below = LARGEST_SHAVE * scale / 10
+    below = largest * scale / 10
     for prove in (_whole_proof, weaker_lower_proof):
-        with limited(LOWER_SHARE * seconds_left()):
-            threshold, part = prove(problem, elements, lower - below)
+        with limited(own.lower_share * seconds_left()):
+            threshold, part = prove(problem, elements, lower - below, params)
         if part is not ENUMERATED:
-            yield from ((min(lower, threshold + below) - shave * scale, part) for shave in SHAVES)
+            yield from ((min(lower, threshold + below) - shave * scale, part) for shave in own.shaves)
     yield lower, ENUMERATED
 
 
-def _whole_proof(problem: Problem, elements: IntArray, threshold: float) -> tuple[float, Any]:
-    return threshold, lower_proof(problem, elements, threshold)
+def _whole_proof(
+    problem: Problem, elements: IntArray, threshold: float, params: CertificateParams
+) -> tuple[float, Any]:
+    return threshold, lower_proof(problem, elements, threshold, params)

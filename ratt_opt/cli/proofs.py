@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from ratt_opt.certificates.verifier.work import SECONDS
+from ratt_opt.certificates.verifier.limits import DEFAULT as LIMITS
+from ratt_opt.certificates.verifier.limits import SECONDS
 from ratt_opt.cli.exit_codes import UPPER_ONLY
 from ratt_opt.cli.options import JsonFlag, LatexFlag, Objective, OutFolder, check_output
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, written
@@ -30,6 +31,10 @@ def verify(
         typer.Option("--motion", help="Of the targets, as given to bound; with --problem.", show_default=False),
     ] = None,
     time_limit: Annotated[float, typer.Option("--time-limit", help="Seconds before it counts as undecided.")] = SECONDS,
+    limits: Annotated[
+        Path | None,
+        typer.Option("--limits", help="TOML file of other limits of the work on one file.", show_default=False),
+    ] = None,
     verified: Annotated[
         bool, typer.Option("--verified", help="Ask ratt-check too, the checker extracted from its Coq proof.")
     ] = False,
@@ -44,12 +49,14 @@ def verify(
     Exit 0: both ends are proved; 1: the first fault is named; 2: the file is no certificate; 3: only the upper end is
     proved; 4: neither proved nor refuted within the limits. None of these if the output cannot be written (74).
     """
+    from ratt_opt._params import read_params
     from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, verify_cuts
+    from ratt_opt.certificates.verifier.limits import within
     from ratt_opt.certificates.verifier.reading import load
     from ratt_opt.certificates.verifier.verify import verify_document
     from ratt_opt.certificates.verifier.work import watched
 
-    checker = None
+    checker, allowed = None, None if limits is None else read_params(limits, LIMITS, "limits")
     if verified:
         from ratt_opt.certificates.extracted import check_extracted, find_checker
 
@@ -66,7 +73,7 @@ def verify(
 
             given = first_step(given, MissionModel(motion=motion, objective=objective))
         expected = differences(given, objective)
-    with Step("checking the certificate") as step, watched(step.say):
+    with Step("checking the certificate") as step, watched(step.say), within(allowed):
         document = load(file)
         if document["format"] == CUTS_FORMAT:
             if problem is not None or verified or explain:

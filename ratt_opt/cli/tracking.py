@@ -72,6 +72,9 @@ def track(
     rms: Annotated[
         float | None, typer.Option("--rms", help="Accuracy wanted [m]: say in how many steps the RMS error keeps it.")
     ] = None,
+    params: Annotated[
+        Path | None, typer.Option("--params", help="TOML file of other parameters of the mission.", show_default=False)
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", help="Seed of everything random.")] = 0,
     seeds: Annotated[int, typer.Option("--seeds", min=1, help="Missions for the figures' intervals.")] = 1,
     as_json: JsonFlag = False,
@@ -81,8 +84,10 @@ def track(
     An interrupt (Ctrl-C) keeps the steps flown and exits with 130; the same command goes on from there.
     """
     from ratt_opt._files import output_directory
+    from ratt_opt._params import read_params
     from ratt_opt._validation import check_number
     from ratt_opt.missions.drawing.write import FILES
+    from ratt_opt.missions.params import MissionParams
     from ratt_opt.missions.players.planners import MaxMinPlanner, RefinedPlanner
     from ratt_opt.missions.run import run_mission
     from ratt_opt.missions.world import MissionModel
@@ -94,7 +99,14 @@ def track(
         check_number("--rms", rms, low=0.0)
     scenario = load_scenario(file)
     folder = output_directory(out, *FILES)
-    model = MissionModel(motion=motion, sensor=sensor, linearisation=linearisation, objective=objective, beam=beam)
+    model = MissionModel(
+        motion=motion,
+        sensor=sensor,
+        linearisation=linearisation,
+        objective=objective,
+        beam=beam,
+        params=read_params(params, MissionParams()),
+    )
     chosen: str | MaxMinPlanner | RefinedPlanner = planner
     if time_limit is not None and planner == "maxmin":
         chosen = MaxMinPlanner(time_limit=time_limit, max_nodes=None)

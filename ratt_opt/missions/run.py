@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._params import changed
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.missions.journal import Journal
@@ -45,8 +46,6 @@ if TYPE_CHECKING:
 __all__ = ["SHARING", "Flight", "Players", "run_mission"]
 
 SHARING = ("best group", "all surviving")
-MOST_STEPS = 10**6
-"""Every step is kept, and written; a million take gigabytes already."""
 TRUTH, MOTION, LUCK, STRIKE, ATTACKER = range(5)
 """Streams of random numbers: the first states, motion noise, measurement noise, failures, the attacker's own."""
 
@@ -99,7 +98,7 @@ def run_mission(
     InputError : an argument breaks its rule, a planner or attacker returns what it may not, or the journal is another
         mission's.
     """
-    check_integer("steps", steps, low=1, high=MOST_STEPS)
+    check_integer("steps", steps, low=1, high=1_000_000)
     check_integer("seed", seed, low=0)
     planner, attacker = current_name("planner", planner), current_name("attacker", attacker)
     if sharing is None:
@@ -111,7 +110,9 @@ def run_mission(
     named = {"planner": planner, "attacker": attacker, "attacks": attacks, "sharing": sharing}
     settings = {name: _described(value) for name, value in named.items()}
     settings |= {"horizon": str(horizon), "seed": str(seed), "linearisation": world.model.linearisation}
-    log = Journal.open(journal, scenario, settings | {"model": _described(world.model)})
+    changes = changed(world.model.params)
+    of_model = {"model": _described(world.model)} | ({"params": str(changes)} if changes else {})
+    log = Journal.open(journal, scenario, settings | of_model)
     settings |= {name: _described(getattr(world.model, name)) for name in ("motion", "area")}
     flight = Flight(world, players, sharing, seed)
     for step in range(steps):

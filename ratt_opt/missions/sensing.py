@@ -16,15 +16,11 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.missions.belief import Belief
+    from ratt_opt.missions.params import MissionParams
     from ratt_opt.missions.world import World
     from ratt_opt.scenario.sensors.model import SensorModel
 
 __all__ = ["Reading", "group_pieces", "innovations_squared", "simulated_readings"]
-
-ROUNDS = 4
-"""Linearisations of an iterated update; on the paper's settings the estimate no longer moves visibly after three."""
-ON_TOP = 1e-9
-"""Distance [m] below which a measurement has no derivative: it is linearised at the point that it names."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,13 +33,13 @@ class Reading:
 
 def simulated_readings(world: World, poses: FloatArray, truth: FloatArray, luck: FloatArray) -> list[Reading]:
     """Simulate every robot's reading of targets in states ``truth`` (M, d); ``luck`` (N, M, k) standard normal."""
-    readings: dict[int, Reading] = {}
+    readings, on_top = dict[int, Reading](), world.model.params.on_top
     for sensor, robots in world.alike:
         here, states = poses[robots][:, None], truth[:, : sensor.reads]
         apart = np.linalg.norm(states[:, :2] - here[..., :2], axis=-1)
-        there = np.where((apart > ON_TOP)[..., None], states, states + 1.0)
+        there = np.where((apart > on_top)[..., None], states, states + 1.0)
         values = sensor.measure(here, there) + sensor.disturbance(here, there, luck[robots, :, : sensor.size])
-        seen = sensor.sees(here, there) & (apart > ON_TOP)
+        seen = sensor.sees(here, there) & (apart > on_top)
         readings |= {int(i): Reading(values[k], seen[k]) for k, i in enumerate(robots)}
     return [readings[i] for i in range(len(poses))]
 
@@ -67,7 +63,7 @@ def group_pieces(
     """
     pieces = Pieces.none(world.scenario.n_robots, predicted)
     members = set(robots)
-    rounds = ROUNDS if world.model.linearisation == "iterated" else 1
+    rounds = world.model.params.linearisations if world.model.linearisation == "iterated" else 1
     point, second_order = predicted, world.model.linearisation != "first order"
     for _ in range(rounds):
         squared, count = 0.0, 0
@@ -75,7 +71,7 @@ def group_pieces(
             own = [i for i in owners.tolist() if i in members]
             if own:
                 sightings = _stacked(own, poses, readings, pose_covariances)
-                read = _linearise(sensor, sightings, (predicted, point), second_order=second_order)
+                read = _linearise(sensor, sightings, (predicted, point), world.model.params, second_order=second_order)
                 r = sensor.reads
                 pieces.information[own, :, :r, :r], pieces.vector[own, :, :r] = read.information, read.vector
                 squared, count = squared + float(read.squared.sum()), count + int(read.usable.sum()) * sensor.size
@@ -105,7 +101,7 @@ def innovations_squared(
         if own:
             second_order, r = world.model.linearisation != "first order", sensor.reads
             sightings = _stacked(own, poses, readings, pose_covariances)
-            read = _linearise(sensor, sightings, (predicted, predicted), second_order=second_order)
+            read = _linearise(sensor, sightings, (predicted, predicted), world.model.params, second_order=second_order)
             i, j = np.nonzero(read.usable)
             mean, covariance = predicted.mean[j, :r], predicted.covariance[j, :r, :r]
             # By the matrix inversion lemma, so that a sensor may be silent in some direction (R^-1 singular).
@@ -155,13 +151,13 @@ class _Read:
 
 
 def _linearise(
-    sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, Belief], *, second_order: bool
+    sensor: SensorModel, sightings: _Sightings, about: tuple[Belief, Belief], how: MissionParams, *, second_order: bool
 ) -> _Read:
     """Some robots' pieces, linearised at the second belief of ``about``; the first is the prediction."""
     predicted, point = about
     r, poses = sensor.reads, sightings.poses
-    places = _places(sensor, sightings, point.mean[:, :r])
-    usable = sightings.seen & (np.linalg.norm(places[..., :2] - poses[..., :2], axis=-1) > ON_TOP)
+    places = _places(sensor, sightings, point.mean[:, :r], how.on_top)
+    usable = sightings.seen & (np.linalg.norm(places[..., :2] - poses[..., :2], axis=-1) > how.on_top)
     i, j = np.nonzero(usable)
     here, there, values = poses[i, j], places[i, j], sightings.values[i, j]
     slope = sensor.jacobian(here, there)
@@ -189,10 +185,10 @@ def _linearise(
     return read
 
 
-def _places(sensor: SensorModel, sightings: _Sightings, expected: FloatArray) -> FloatArray:
+def _places(sensor: SensorModel, sightings: _Sightings, expected: FloatArray, nearest: float) -> FloatArray:
     """(K, M, r) where to linearise: as expected, or if that is on top of the robot, at the point that was sighted."""
     places = np.array(np.broadcast_to(expected, (*sightings.values.shape[:2], expected.shape[-1])))
-    on_top = sightings.seen & (np.linalg.norm(places[..., :2] - sightings.poses[..., :2], axis=-1) <= ON_TOP)
+    on_top = sightings.seen & (np.linalg.norm(places[..., :2] - sightings.poses[..., :2], axis=-1) <= nearest)
     if on_top.any():
         pointed = sensor.pointed_at(sightings.poses, sightings.values)
         if pointed is not None:

@@ -22,6 +22,7 @@ from ratt_opt.missions.ahead.horizon import (
 from ratt_opt.missions.models.robots import RobotMotion, TeamMotion, check_robot_motion
 from ratt_opt.missions.models.sensors import check_sensor, robots_by_sensor, sensors_of
 from ratt_opt.missions.models.targets import TargetMotion, check_motion, target_motion
+from ratt_opt.missions.params import MissionParams
 from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.setfunctions.checked_matrices import WIDEST
@@ -62,6 +63,7 @@ class MissionModel:
     area : x and y of two corners [m] that robots do not leave, or ``None``. Controls that end outside are not offered;
         a robot that has no other keeps the one that ends nearest to it.
     beam : number of control sequences of each robot to plan with, those worth most alone; ``None`` for all
+    params : numbers of the filter, of plans and of the clock
     """
 
     motion: str | TargetMotion = "known velocity"
@@ -72,6 +74,7 @@ class MissionModel:
     output: Literal["mean", "last"] = "mean"
     area: tuple[float, float, float, float] | None = None
     beam: int | None = None
+    params: MissionParams = field(default_factory=MissionParams, repr=False)  # a journal states those that are changed
 
     def __post_init__(self) -> None:
         for name, known in (("linearisation", get_args(Linearisation)), ("output", OUTPUTS)):
@@ -86,6 +89,8 @@ class MissionModel:
             raise InputError("area", "must be x and y of its lower left and upper right corner", self.area)
         if self.beam is not None:
             check_integer("beam", self.beam, low=1)
+        if not isinstance(self.params, MissionParams):
+            raise InputError("params", "must be MissionParams", type(self.params).__name__)
 
 
 def _beside(prior: FloatArray, information: FloatArray) -> FloatArray:
@@ -152,13 +157,18 @@ class World:
         return self.scenario.sampling_period
 
     @property
+    def on_time(self) -> float:
+        """Seconds within which two times count as one."""
+        return self.model.params.on_time * self.period
+
+    @property
     def reads(self) -> int:
         """Numbers r of a target's state that some sensor's measurement depends on."""
         return max(sensor.reads for sensor in self.sensors)
 
     def sequences(self, poses: FloatArray) -> Sequences:
         """The elements of a plan from poses (N, p), those that leave the area left out."""
-        offered = control_sequences(self.scenario, poses, self.horizon, self.move)
+        offered = control_sequences(self.scenario, poses, self.horizon, self.move, self.model.params.sequences)
         if self.model.area is None:
             return offered
         low, high = np.array(self.model.area[:2]), np.array(self.model.area[2:])
@@ -186,7 +196,7 @@ class World:
         information = np.zeros((*blocks.shape[:2], r * self.horizon, r * self.horizon))
         for h in range(self.horizon):
             information[:, :, r * h : r * h + r, r * h : r * h + r] = blocks[:, :, h]
-        prior = joint_covariance(predicted, self.motion, self.period, r)
+        prior = joint_covariance(predicted, self.motion, self.period, r, self.model.params.noise_floor)
         information = _beside(prior, information)
         weights = np.array([target.weight for target in self.scenario.targets])
         output = output_matrix(self.model.output, self.horizon, r)

@@ -14,6 +14,7 @@ import pytest
 from flint import fmpq
 
 from ratt_opt import (
+    CertificateParams,
     FileFormatError,
     MaxEigenvalueObjective,
     Problem,
@@ -23,10 +24,11 @@ from ratt_opt import (
     problem_document,
     ratt,
 )
-from ratt_opt.certificates import covers, listed_columns, write
+from ratt_opt.certificates import covers, write
 from ratt_opt.certificates.covers import cover_proof
 from ratt_opt.certificates.group_sizes.proof import group_size_proof
 from ratt_opt.certificates.lower import ENUMERATED, lower_proof, weaker_lower_proof
+from ratt_opt.certificates.params import DEFAULT, CoverProofParams
 from ratt_opt.certificates.plan_sets import NotClosedError, PlanSets
 from ratt_opt.certificates.stated_problem import prior_range_of
 from ratt_opt.certificates.verifier.lower import check_lower
@@ -97,14 +99,12 @@ team. The best duals of small teams claim enough, and no proof of theirs would l
 def proof(kind, problem, plan, threshold, nodes=None):
     """The proof of a threshold, or ``None``; where an odd number of links is cut, it lists groups if it can."""
     prove, most = PROVERS[kind]
-    for margin in (SLACK, listed_columns.MARGIN) if kind == "cover" and problem.alpha_c % 2 else (None,):
-        with pytest.MonkeyPatch.context() as patch:
-            if margin is not None:
-                patch.setattr(listed_columns, "MARGIN", margin)
-            try:
-                return prove(PlanSets(problem, np.asarray(plan), threshold), nodes or most)
-            except NotClosedError:
-                continue
+    slack = CertificateParams(covers=CoverProofParams(margin=SLACK))
+    for params in (slack, DEFAULT) if kind == "cover" and problem.alpha_c % 2 else (DEFAULT,):
+        try:
+            return prove(PlanSets(problem, np.asarray(plan), threshold, params), nodes or most)
+        except NotClosedError:
+            continue
     return None
 
 

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from functools import partial
 from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
 
-from ratt_opt import Problem, TraceObjective, exhaustive_optimum
-from ratt_opt.certificates import stated_inequalities
-from ratt_opt.certificates.target_trees import TargetTreeParams, target_trees
+from ratt_opt import CertificateParams, Problem, TraceObjective, exhaustive_optimum
+from ratt_opt.certificates.target_trees import TargetTreeParams
 from ratt_opt.certificates.upper import upper_record
 from ratt_opt.certificates.write import write_certificate
 from ratt_opt.solvers.maxmin.proof import TargetLemma
 from tests.certificates.cases import one_leaf_per_plan
 
-
-def prefer_bases(monkeypatch) -> None:
-    """Let trees of log-dets have base sets at leaves, however few tangents would do."""
-    monkeypatch.setattr(stated_inequalities, "target_trees", partial(target_trees, params=TargetTreeParams(plain=0)))
+BASES = CertificateParams(lemmas=TargetTreeParams(plain=0))
+"""Trees of log-dets have base sets at leaves, however few tangents would do."""
 
 
 def touching(problem: Problem, target: int):
@@ -103,9 +99,9 @@ def spaced(problem: Problem):
     return replace(proof, cuts=cuts, spacing=SimpleNamespace(count=round))
 
 
-def certified_by_rows(problem: Problem, proof, path):
+def certified_by_rows(problem: Problem, proof, path, params=CertificateParams()):  # noqa: B008
     """A certificate of the exhaustive optimum by such a proof; returns it and its document."""
     best = exhaustive_optimum(problem)
-    part = upper_record(problem, proof, best.upper)
+    part = upper_record(problem, proof, best.upper, params)
     written = write_certificate(problem, best.elements, lower=best.lower, upper=best.upper, upper_part=part, path=path)
     return written, json.loads(path.read_text())

@@ -12,6 +12,7 @@ import pytest
 from flint import fmpq
 
 from ratt_opt import (
+    ExplanationParams,
     Problem,
     TraceObjective,
     certify,
@@ -20,9 +21,9 @@ from ratt_opt import (
     solve_maxmin,
     verify_certificate,
 )
-from ratt_opt.certificates import lower_explanation, upper_explanation
+from ratt_opt.certificates import lower_explanation
 from ratt_opt.certificates.explanation import explained
-from ratt_opt.certificates.lower_explanation import LowerStory
+from ratt_opt.certificates.lower_explanation import LowerStory, Wording
 from ratt_opt.cli import run
 from tests.certificates import lemmas
 from tests.certificates.engine import ENUMERATED, drawn, proof, statement
@@ -54,7 +55,7 @@ def test_in_json(row, capsys):
     assert json.loads(capsys.readouterr().out)["explanation"][1].startswith("Why this plan")
 
 
-def test_every_conclusion_is_told(monkeypatch, tmp_path):
+def test_every_conclusion_is_told(tmp_path):
     problem = random_scenario(5, 3, alpha_s=1, alpha_c=4, seed=1).problem()
     document = json.loads(certify(problem, solve_maxmin(problem), tmp_path / "c.json").path.read_text())
     told = {"forced": explained(document), "enumerated": explained(document | {"lower": ENUMERATED})}
@@ -67,13 +68,13 @@ def test_every_conclusion_is_told(monkeypatch, tmp_path):
                 told[part["conclusion"]] = story(drawn_problem, plan, lower, part)
     assert set(told) == set(lower_explanation.CONCLUSIONS)
     assert all(len(lines) >= 3 for lines in told.values())
-    monkeypatch.setattr(lower_explanation, "MOST_LINES", 1)
-    more = [line for line in explained(document) if "nodes more" in line]
+    more = [line for line in explained(document, ExplanationParams(lines=1)) if "nodes more" in line]
     assert more[0] == f"  ... and {len(document['lower']['sets']['tree']) - 1:,} nodes more"
 
 
 def story(problem, plan, lower, part):
-    return LowerStory(statement(problem, plan), fmpq(*lower.as_integer_ratio())).lines(part)
+    wording = Wording(ExplanationParams())
+    return LowerStory(statement(problem, plan), fmpq(*lower.as_integer_ratio()), wording).lines(part)
 
 
 def test_numbers_of_leaves_are_those_of_the_definition():
@@ -93,13 +94,11 @@ def test_numbers_of_leaves_are_those_of_the_definition():
     assert told > 10
 
 
-def test_a_team_is_not_said_to_have_more_robots_than_it_has(monkeypatch, tmp_path):
-    for module in (lower_explanation, upper_explanation):
-        monkeypatch.setattr(module, "MOST_LINES", 10_000)
+def test_a_team_is_not_said_to_have_more_robots_than_it_has(tmp_path):
     scenario = limited_view_scenario(6, 6, alpha_s=2, alpha_c=4, seed=1, view=60, communication_range=45)
     problem = scenario.problem()
     file = certify(problem, solve_maxmin(problem), tmp_path / "c.json").path
-    lines = explained(json.loads(file.read_text()))
+    lines = explained(json.loads(file.read_text()), ExplanationParams(lines=10_000))
     sizes = [int(n) for line in lines for n in re.findall(r"Any (\d+) robots", line)]
     assert sizes
     assert max(sizes) <= 6

@@ -12,6 +12,7 @@ import pytest
 from ratt_opt import Problem, TraceObjective, worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.group_sizes.score_bounds import ScoreBounds
+from ratt_opt.certificates.params import SizeProofParams
 from ratt_opt.certificates.verifier.exact_matrices import is_positive
 from ratt_opt.certificates.verifier.sizes import UNIT, LinkCosts, largest_groups
 from tests.certificates.engine import accepted_leaves, lower_proof, network, proof, refuse, weaker_lower_proof
@@ -34,7 +35,7 @@ def near_of(problem):
 
 
 def bounds_of(problem):
-    return ScoreBounds(problem.threat.graph, problem.threat.alpha_c, Budget())
+    return ScoreBounds(problem.threat.graph, problem.threat.alpha_c, Budget(), SizeProofParams())
 
 
 def cost(one, duals, group):

@@ -8,6 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 
+from ratt_opt import CertificateParams
 from tests.certificates import lemmas
 from tests.certificates.mutants import changed, places, variants
 from tests.formal.verified import decisions, python_decision, ratt_check, sweep
@@ -16,7 +17,7 @@ from tests.strategies import random_problem
 NAMES = ("tangents", "lemmas", "usual", "rows", "spacing")
 
 
-def bases(folder, seeds):
+def bases(folder, seeds, params=None):
     """Certificates by rows: traces and log-dets with lemmas, and coverage with spaced values; of small teams."""
     for seed in seeds:
         rng = np.random.default_rng([68, seed])
@@ -26,7 +27,9 @@ def bases(folder, seeds):
         else:
             problem = random_problem(rng, 3, kind=["trace", "logdet"][seed % 3], controls=2, complete=True)
             proof = lemmas.by_rows(problem, rng)
-        written, document = lemmas.certified_by_rows(problem, proof, folder / "base.json")
+        written, document = lemmas.certified_by_rows(
+            problem, proof, folder / "base.json", params or CertificateParams()
+        )
         if written.verified.lower > 1e-3 and document["upper"].get("lemmas"):
             yield rng, document
 
@@ -75,17 +78,16 @@ def test_spaced_log_determinants_are_refused_in_one_line(tmp_path):
     assert "reads the spacing of values for the trace only" in done.stdout
 
 
-def test_base_sets_are_read_alike(tmp_path, monkeypatch):
+def test_base_sets_are_read_alike(tmp_path):
     """Leaves that gains beside a base set bound, for the log-det: files, and forged ones."""
-    lemmas.prefer_bases(monkeypatch)
     paths, based = [], 0
-    for _, document in bases(tmp_path, range(10, 19, 3)):
+    for _, document in bases(tmp_path, range(10, 19, 3), lemmas.BASES):
         nodes = [node for lemma in document["upper"]["lemmas"] for node in lemma["tree"]]
         based += any(isinstance(node, dict) and "base" in node for node in nodes)
         paths.append(tmp_path / f"true{len(paths)}.json")
         paths[-1].write_text(json.dumps(document))
     assert based
     assert decisions(paths) == [0] * len(paths) == [python_decision(path) for path in paths]
-    found, seen, _ = sweep(tmp_path, bases(tmp_path, range(10, 19, 3)), 0.02)
+    found, seen, _ = sweep(tmp_path, bases(tmp_path, range(10, 19, 3), lemmas.BASES), 0.02)
     assert not found
     assert seen >= 20

@@ -215,7 +215,7 @@ def test_dropping_loses_no_value() -> None:
         2, 2, alpha_s=0, alpha_c=0, seed=3, sensor=sensor, controls=((1.0, 0.0), (1.0, 1.0), (3.0, 0.0))
     )
     world = World(scenario, MissionModel(), 2)
-    offered = control_sequences(scenario, scenario.poses, 2, world.move)
+    offered = control_sequences(scenario, scenario.poses, 2, world.move, 20_000)
     problem, kept = problem_of(world)
     assert len(kept.owner) < len(offered.owner)  # the last turn moves nothing: ties
     everything = world.criterion(world.motion.initial(scenario), offered, 0.0)

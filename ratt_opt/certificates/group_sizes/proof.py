@@ -23,15 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["group_size_proof"]
 
-LARGEST_TEAM = 60
-"""Robots."""
-
-FEW = 20_000
-"""Nodes of a tree over all sets of a size; where it has more, the largest groups of that size have one of their own."""
-
-LARGEST_PROOF = 1_500_000
-"""Most integers of trees and bounds; the verifier reads files of two million."""
-
 
 def group_size_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     """Return the record of a proof of the sets' threshold.
@@ -40,14 +31,14 @@ def group_size_proof(sets: PlanSets, max_nodes: int) -> dict[str, Any]:
     ------
     NotClosedError : a group that bounds do not rule out is worth less, or a tree is too large.
     """
-    threat, seconds = sets.problem.threat, seconds_left()
+    threat, seconds, params = sets.problem.threat, seconds_left(), sets.params.sizes
     n_robots, n_blinded = threat.graph.n_robots, threat.n_blinded
-    if n_robots > LARGEST_TEAM or n_blinded == n_robots:
+    if n_robots > params.robots or n_blinded == n_robots:
         raise NotClosedError
-    bounds = ScoreBounds(threat.graph, threat.alpha_c, Budget(None if seconds == np.inf else seconds))
+    bounds = ScoreBounds(threat.graph, threat.alpha_c, Budget(None if seconds == np.inf else seconds), params)
     least = largest_groups(bounds.costs, n_blinded, n_robots + 1)[0].sensing
-    found = Found({}, min(LARGEST_PROOF, max_nodes * n_robots))
-    lemma = _lemma(sets, least, min(FEW, max_nodes))
+    found = Found({}, min(params.numbers, max_nodes * n_robots))
+    lemma = _lemma(sets, least, min(params.few, max_nodes))
     try:
         groups = largest_groups(bounds.costs, n_blinded, lemma["size"])
         trees = [grow_tree(sets, bounds, group, found) for group in groups]

@@ -20,22 +20,15 @@ from ratt_opt.graph.link_scores import SHARES, most_scores
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.budget import Budget
+    from ratt_opt.certificates.params import SizeProofParams
     from ratt_opt.certificates.verifier.sizes import GroupComposition
     from ratt_opt.graph.communication import CommunicationGraph
     from ratt_opt.graph.link_scores import RelaxedScores, SphereMaximum
 
 __all__ = ["CaseBound", "CaseBounds", "ScoreBounds"]
 
-NEAR, STEPS = 1.5, 6
-"""Links (twice) above what a group must score from which a bound is not tried to be lowered, and values it may take.
-Measured on RATT's plans for 24 robots of a dense graph: with 3 and 18 a tree has a quarter fewer nodes, and takes three
-to ten times as long to find."""
-
 LINK = 2
 """Cost of each link that leaves a group: twice as much as in the attacker's scores."""
-
-SPARE = 0.02
-"""Room left below a bound for rounding the diagonal, in twice the links."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +51,8 @@ class ScoreBounds:
     ``duals``, ``forms`` : as the verifier reads them; ``costs`` has taken them over
     """
 
-    def __init__(self, graph: CommunicationGraph, alpha_c: int, budget: Budget) -> None:
-        self.known = most_scores(graph)
+    def __init__(self, graph: CommunicationGraph, alpha_c: int, budget: Budget, params: SizeProofParams) -> None:
+        self.known, self.params = most_scores(graph), params
         self.known.run(budget)
         near = [0] * graph.n_robots
         for i, j in graph.links:
@@ -78,7 +71,7 @@ class ScoreBounds:
     def _form(self, vector: int, size: int) -> dict[str, Any] | None:
         one, start = self.costs[vector], self.known.multipliers[vector, size]
         top = self.known.relaxed[vector].top(start, size)
-        least = 1 - (floor(2 * (top.value + SPARE) / one.step) + 1) * one.step
+        least = 1 - (floor(2 * (top.value + self.params.spare) / one.step) + 1) * one.step
         if least <= one.least[size]:
             return None
         diagonal = _rounded(start + top.level).tolist()
@@ -93,7 +86,7 @@ class CaseBounds:
     """Bounds of what groups of a case score."""
 
     def __init__(self, bounds: ScoreBounds, group: GroupComposition) -> None:
-        self._known, self._costs, self._group = bounds.known, bounds.costs, group
+        self._known, self._costs, self._group, self._params = bounds.known, bounds.costs, group, bounds.params
         self._size, self._n = group.robots, len(bounds.costs[0].near)
         self._need = [-int(limit) for limit in group.limits]
 
@@ -110,11 +103,13 @@ class CaseBounds:
             diagonal = np.zeros(self._n, dtype=np.int64)
             if 0 < joining < others.sum():
                 fixed, relaxed = self._known.relaxed[vector].around(members, others)
-                below = self._need[vector] / 2 - fixed - SPARE
+                below = self._need[vector] / 2 - fixed - self._params.spare
                 top = relaxed.top(multipliers[vector, others], joining)
                 place[others] = top.place
-                if 0.0 <= top.value - below < NEAR:
-                    multipliers[vector, others], top = _lowered(relaxed, multipliers[vector, others], joining, below)
+                if 0.0 <= top.value - below < self._params.near:
+                    steps = self._params.steps
+                    own = _lowered(relaxed, multipliers[vector, others], joining, below, steps)
+                    multipliers[vector, others], top = own
                 diagonal[others] = _rounded(multipliers[vector, others] + top.level)
                 if top.value >= below:
                     continue
@@ -124,7 +119,9 @@ class CaseBounds:
         return CaseBound(-1, (), place, multipliers)
 
 
-def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: float) -> tuple[FloatArray, SphereMaximum]:
+def _lowered(
+    relaxed: RelaxedScores, start: FloatArray, joining: int, below: float, steps: int
+) -> tuple[FloatArray, SphereMaximum]:
     """Multipliers of a bound that is lower, until it is below, and that bound."""
     best = start, relaxed.top(start, joining)
 
@@ -140,7 +137,7 @@ def _lowered(relaxed: RelaxedScores, start: FloatArray, joining: int, below: flo
     from scipy.optimize import minimize  # a third of a second
 
     with suppress(StopIteration):
-        minimize(value, start, jac=True, method="L-BFGS-B", options={"maxiter": STEPS, "maxfun": STEPS})
+        minimize(value, start, jac=True, method="L-BFGS-B", options={"maxiter": steps, "maxfun": steps})
     return best
 
 

@@ -9,17 +9,15 @@ from collections import defaultdict
 from itertools import product
 from typing import TYPE_CHECKING
 
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import array, check_size, fields, index, need
 from ratt_opt.certificates.verifier.work import tick
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-__all__ = ["LARGEST", "cannot_cut_less", "check_levels", "most_links_inside"]
+__all__ = ["cannot_cut_less", "check_levels", "most_links_inside"]
 
-LARGEST = 2**62
-"""Largest integer that a file may state."""
-MOST_STATES = 300_000
 Classes = tuple[tuple[int, ...], ...]
 State = tuple[int, tuple[int, ...]]
 """Weight cut, and the sizes of eliminated robots in each class."""
@@ -54,7 +52,7 @@ def check_levels(
     least: int | None = None
     for level in array("levels", levels):
         stated, triples = fields("level", level, "prices triples")
-        prices = [index("price", one, LARGEST) for one in array("level prices", stated, robots)]
+        prices = [index("price", one, limits().cut_numbers) for one in array("level prices", stated, robots)]
         known = [_triple(one, robots) for one in array("triples", triples)]
         room = sum(prices) + sum(price for _, price in known) - needed
         is_least = least is None or room < least
@@ -76,7 +74,7 @@ def _triple(stated: object, robots: int) -> tuple[frozenset[int], int]:
     *three, price = array("triple", stated, 4)
     found = frozenset(index("robot of a triple", i, robots) for i in three)
     need(len(found) == len(three), "levels: a triple names a robot twice")
-    return found, index("price of a triple", price, LARGEST)
+    return found, index("price of a triple", price, limits().cut_numbers)
 
 
 def _has_partition(groups: list[tuple[frozenset[int], int]], room: int, robots: int) -> bool:
@@ -145,7 +143,7 @@ def _joined(one: Table, other: Table, sizes: Sequence[int], most: int, claim: in
                 total[k] += load
             if weight + more < claim and all(load <= left for load, left in zip(total, room, strict=True)):
                 _keep(fronts[classes], (weight + more, tuple(total)))
-    check_size("states of an elimination", sum(map(len, fronts.values())), MOST_STATES)
+    check_size("states of an elimination", sum(map(len, fronts.values())), limits().states)
     return {classes: states for classes, states in fronts.items() if states}
 
 

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.certificates.verifier.cases import robots_of
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed, walk
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import UndecidedError
@@ -31,11 +32,6 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.cases import Cases, Close, GroupCase
 
 __all__ = ["Duals", "ListedGroup", "check_duals", "check_partition"]
-
-LARGEST = 2**53
-"""Largest size of duals and flows."""
-MOST_LISTED = 250_000
-"""Groups to choose from, and so the memory of a check."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +58,14 @@ class Duals:
 
     def __init__(self, cases: Cases, given: object) -> None:
         link, robots, blinded = fields("duals", given, "link robots blinded")
-        self.cases, self.about = cases, cases.about
-        self.link, self.blinded = index("duals link", link, LARGEST), index("duals blinded", blinded, LARGEST)
-        self.robot = [signed("duals robots", dual, LARGEST) for dual in array("duals robots", robots, self.about.n)]
+        self.cases, self.about, self._largest = cases, cases.about, limits().dual_numbers
+        self.link, self.blinded = (
+            index("duals link", link, self._largest),
+            index("duals blinded", blinded, self._largest),
+        )
+        self.robot = [
+            signed("duals robots", dual, self._largest) for dual in array("duals robots", robots, self.about.n)
+        ]
         self.slack = 2 * self.link * self.about.alpha_c + self.blinded * cases.blinded - sum(self.robot)
         self.bounds: list[_Bound] = []
         self._listed: dict[int, ListedGroup] = {}
@@ -80,14 +81,14 @@ class Duals:
         for bound in array("bounds", given):
             tick()
             blinding, cut, carried = fields("bound", bound, "blinding cut flow")
-            extra = index("bound cut", cut, LARGEST)
+            extra = index("bound cut", cut, self._largest)
             flow: list[dict[int, int]] = [{} for _ in range(self.about.n)]
             for (i, j), value in zip(pairs, array("bound flow", carried, len(pairs)), strict=True):
-                amount = signed("bound flow", value, LARGEST)
+                amount = signed("bound flow", value, self._largest)
                 fits = abs(amount) <= self.link + extra or (i, j) in self.about.safe_links
                 need(fits, "lower proof: a flow exceeds what a link may carry")
                 flow[i][j], flow[j][i] = amount, -amount
-            self.bounds.append(_Bound(index("bound blinding", blinding, LARGEST), extra, flow))
+            self.bounds.append(_Bound(index("bound blinding", blinding, self._largest), extra, flow))
 
     def close_by_flow(self, case: GroupCase, number: object) -> None:
         """Leaf ``flow``: every group of the case costs more than the slack, or than nothing if that is negative."""
@@ -145,8 +146,8 @@ class Duals:
         known = self._listed.get(inside)
         if cost <= self.slack and (known is None or known.need > blinded):
             self._listed[inside] = ListedGroup(inside, cost, blinded, links)
-            if len(self._listed) > MOST_LISTED:
-                raise UndecidedError(f"not decided: more than {MOST_LISTED} groups are listed")
+            if len(self._listed) > (most := limits().listed):
+                raise UndecidedError(f"not decided: more than {most} groups are listed")
 
 
 def check_duals(cases: Cases, size: int, *given: object) -> int:

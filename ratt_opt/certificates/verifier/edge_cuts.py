@@ -29,7 +29,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ratt_opt.certificates.verifier.cut_proofs import LARGEST, cannot_cut_less, check_levels, most_links_inside
+from ratt_opt.certificates.verifier.cut_proofs import cannot_cut_less, check_levels, most_links_inside
+from ratt_opt.certificates.verifier.limits import SECONDS, VerifierLimits, within
+from ratt_opt.certificates.verifier.limits import limits as current
 from ratt_opt.certificates.verifier.reading import (
     CUTS_FORMAT,
     array,
@@ -40,7 +42,7 @@ from ratt_opt.certificates.verifier.reading import (
     need,
     walk,
 )
-from ratt_opt.certificates.verifier.work import SECONDS, limited, tick
+from ratt_opt.certificates.verifier.work import limited, tick
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -55,7 +57,6 @@ PROOFS = {
     "counting": "links_inside",
 }
 """Fields of each kind of proof."""
-MOST_LISTED = 300_000
 GroupCase = tuple[frozenset[int], frozenset[int]]
 
 
@@ -87,7 +88,9 @@ class VerifiedCuts:
         ]
 
 
-def verify_cuts(document: dict[str, Any], *, time_limit: float = SECONDS) -> VerifiedCuts:
+def verify_cuts(
+    document: dict[str, Any], *, time_limit: float = SECONDS, limits: VerifierLimits | None = None
+) -> VerifiedCuts:
     """Decide a certificate of cuts that is loaded already.
 
     Raises
@@ -96,15 +99,15 @@ def verify_cuts(document: dict[str, Any], *, time_limit: float = SECONDS) -> Ver
     ProofError : the proof has a fault; the text names the first one found.
     UndecidedError : neither, within the time.
     """
-    with limited(time_limit):
+    with within(limits), limited(time_limit):
         return _decide(document)
 
 
 def _decide(document: dict[str, Any]) -> VerifiedCuts:
     proof = next((name for name, own in PROOFS.items() if set(document) == {*STATED.split(), *own.split()}), "prices")
     _, _, network, size, claim, *own = fields("", document, f"{STATED} {PROOFS[proof]}")
-    lower = index("claim", claim, LARGEST)
-    about = _Network(network, index("size", size, LARGEST))
+    lower = index("claim", claim, current().cut_numbers)
+    about = _Network(network, index("size", size, current().cut_numbers))
     leaves = about.check(proof, lower, own)
     return VerifiedCuts(
         lower=lower,
@@ -149,10 +152,10 @@ class _Network:
         count, links, weights, sizes, protected, scale, size_scale = fields(
             "network", stated, "robots links weights sizes protected scale size_scale"
         )
-        self.stated_robots, self.size = index("network robots", count, LARGEST), size
+        self.stated_robots, self.size = index("network robots", count, current().cut_numbers), size
         given = _pairs("network links", links, self.stated_robots)
-        each = [index("weight", one, LARGEST) for one in array("weights", weights, len(given))]
-        own = [index("robot's size", one, LARGEST) for one in array("sizes", sizes, self.stated_robots)]
+        each = [index("weight", one, current().cut_numbers) for one in array("weights", weights, len(given))]
+        own = [index("robot's size", one, current().cut_numbers) for one in array("sizes", sizes, self.stated_robots)]
         need(all(own), "network: a robot has no size")
         joined = _pairs("protected links", protected, self.stated_robots)
         need(set(joined) <= set(given), "network: a protected link is no link")
@@ -170,9 +173,9 @@ class _Network:
                 between[ends] = between.get(ends, 0) + weight
         self.links = sorted(between)
         self.weights = [between[ends] for ends in self.links]
-        self.scale = 1 + index("scale less 1", scale - 1 if type(scale) is int else scale, LARGEST)
+        self.scale = 1 + index("scale less 1", scale - 1 if type(scale) is int else scale, current().cut_numbers)
         self.size_scale = 1 + index(
-            "size scale less 1", size_scale - 1 if type(size_scale) is int else size_scale, LARGEST
+            "size scale less 1", size_scale - 1 if type(size_scale) is int else size_scale, current().cut_numbers
         )
         self.near: list[list[int]] = [[] for _ in range(self.robots)]
         for i, j in self.links:
@@ -218,14 +221,17 @@ class _Network:
     def _check_counting(self, claim: int, inside: object) -> int:
         """Check a proof by the number of links that groups of so few robots can have; it has no leaves."""
         most = most_links_inside(self.stated_robots, self.size // self.least_size)
-        need(index("links inside", inside, LARGEST) == most, "links inside: not the most that groups can have")
+        need(
+            index("links inside", inside, current().cut_numbers) == most,
+            "links inside: not the most that groups can have",
+        )
         lightest = sorted(self.stated_weights)[: max(len(self.stated_weights) - most, 0)]
         need(sum(lightest) >= claim, "claim: counting proves less")
         return 0
 
     def _walk(self, unit: object, prices: object, tree: object) -> int:
-        self.unit = 1 + index("unit less 1", unit - 1 if type(unit) is int else unit, LARGEST)
-        self.prices = [index("price", price, LARGEST) for price in array("prices", prices, self.robots)]
+        self.unit = 1 + index("unit less 1", unit - 1 if type(unit) is int else unit, current().cut_numbers)
+        self.prices = [index("price", price, current().cut_numbers) for price in array("prices", prices, self.robots)]
         if self.needed is not None:
             self.gap = max(sum(self.prices) - self.unit * self.needed, -1)
         return walk("cuts", tree, (frozenset[int](), frozenset[int]()), self.expand)
@@ -241,7 +247,7 @@ class _Network:
             return
         multiplier, changed = fields("leaf", node, "multiplier parts")
         self._change(array("parts", changed))
-        self._close(index("multiplier", multiplier, LARGEST), inside, outside)
+        self._close(index("multiplier", multiplier, current().cut_numbers), inside, outside)
 
     def _change(self, changed: list[Any]) -> None:
         need(len(changed) % 2 == 0, "cuts proof: a part of a link is missing")
@@ -258,7 +264,7 @@ class _Network:
         bound = self._bound(multiplier, room, inside, free)
         if not free and self.gap >= 0 and -self.gap <= bound <= 0:
             self.listed.append(inside)
-            check_size("list of groups", len(self.listed), MOST_LISTED)
+            check_size("list of groups", len(self.listed), current().cut_groups)
             return
         need(bound <= -1 - self.gap, "cuts proof: a leaf is open")
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.work import tell, tick
 from ratt_opt.errors import FileFormatError, InputError, ProofError
 
@@ -23,11 +24,6 @@ FORMAT = "ratt-opt certificate"
 VERSION = 2
 CUTS_FORMAT, CUTS_VERSION = "ratt-opt cut certificate", 1
 """Certificates of fewest cuts."""
-LARGEST_FILE = 32 * 2**20
-LARGEST_LENGTH = 2_000_000
-"""Most entries of all lists together; with the next two this bounds the memory of a check."""
-MOST_CELLS = 1_000_000
-DEEPEST_TREE = 2500
 
 
 def _refusal(where: str, rule: str, value: object) -> FileFormatError:
@@ -65,7 +61,7 @@ def walk(name: str, tree: object, root: Any, expand: Any) -> int:
     """
     paths, leaves, nodes = [iter([root])], 0, array(f"{name} tree", tree)
     for done, node in enumerate(nodes):
-        check_size(f"{name} tree (depth)", len(paths), DEEPEST_TREE)
+        check_size(f"{name} tree (depth)", len(paths), limits().depth)
         tick()
         tell(f"{name} proof", done, len(nodes))
         case = _next_case(paths)
@@ -90,9 +86,9 @@ def load(path: str | Path) -> dict[str, Any]:
     """Read a document of this format and version; anything else is a FileFormatError."""
     try:
         with Path(path).open("rb") as file:
-            raw = file.read(LARGEST_FILE + 1)
-        check_size("file", len(raw), LARGEST_FILE)
-        check_size("lists", raw.count(b",") + raw.count(b"["), LARGEST_LENGTH)
+            raw = file.read(limits().file + 1)
+        check_size("file", len(raw), limits().file)
+        check_size("lists", raw.count(b",") + raw.count(b"["), limits().entries)
         text = raw.decode("utf-8")
         document = json.loads(text, parse_float=_finite, parse_constant=_finite, object_pairs_hook=_record)
     except OSError as error:

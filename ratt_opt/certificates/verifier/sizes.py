@@ -28,6 +28,7 @@ from flint import fmpz_mat
 
 from ratt_opt.certificates.verifier.cases import Cases, robots_of
 from ratt_opt.certificates.verifier.exact_matrices import is_positive
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import array, fields, index, need, signed
 from ratt_opt.certificates.verifier.work import tick
 from ratt_opt.errors import UndecidedError
@@ -39,10 +40,6 @@ if TYPE_CHECKING:
 
 __all__ = ["UNIT", "GroupComposition", "LinkCosts", "check_sizes", "largest_groups", "possible_groups"]
 
-LARGEST = 2**31
-"""Largest size of duals, costs and diagonals."""
-MOST_ROBOTS = 200
-"""Most robots: a characteristic polynomial of that many rows takes less than a second; one of 1,000 minutes."""
 UNIT = 2**10
 """Unit of diagonals."""
 
@@ -75,23 +72,25 @@ def possible_groups(
 ) -> tuple[list[LinkCosts], list[GroupComposition]]:
     """Read the costs and their forms; return them and the sizes of a largest group that they leave."""
     about = cases.about
-    if about.n > MOST_ROBOTS:
-        raise UndecidedError(f"not decided: sizes of groups are for at most {MOST_ROBOTS} robots")
+    if about.n > (most := limits().sized_robots):
+        raise UndecidedError(f"not decided: sizes of groups are for at most {most} robots")
     costs: list[LinkCosts] = []
     for own in array("duals", duals):
         link, robots = fields("duals", own, "link robots")
-        price = index("duals link", link, LARGEST)
+        price = index("duals link", link, limits().size_numbers)
         costs.append(LinkCosts(cases.near, about.alpha_c, price, _integers("duals robots", robots, about.n)))
     need(costs, "lower proof: there are no duals")
     for form in array("forms", forms):
         number, robots, least, diagonal = fields("form", form, "duals robots least diagonal")
         one, count = costs[index("form duals", number, len(costs))], index("form robots", robots, about.n + 1)
-        one.raise_least(count, signed("form least", least, LARGEST), _integers("form diagonal", diagonal, about.n))
+        one.raise_least(
+            count, signed("form least", least, limits().size_numbers), _integers("form diagonal", diagonal, about.n)
+        )
     return costs, largest_groups(costs, cases.blinded, size)
 
 
 def _integers(where: str, given: object, n: int) -> list[int]:
-    return [signed(where, value, LARGEST) for value in array(where, given, n)]
+    return [signed(where, value, limits().size_numbers) for value in array(where, given, n)]
 
 
 class LinkCosts:

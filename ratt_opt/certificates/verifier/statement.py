@@ -10,6 +10,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier.exact_matrices import definite, missing, total, trace
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import (
     array,
     check_rows,
@@ -24,12 +25,9 @@ from ratt_opt.certificates.verifier.reading import (
 )
 from ratt_opt.certificates.verifier.work import afford, hold, refuse_wide
 
-__all__ = ["LARGEST_TEAM", "PRECISIONS", "Statement"]
+__all__ = ["Statement"]
 
-PRECISIONS = (128, 1024)
-"""Bits of the balls; a comparison undecided at the last is not proved. The first decides nearly all of them."""
 PROBLEM = "objective dimension prior information weights owners links alpha_s alpha_c protected_robots protected_links"
-LARGEST_TEAM = 1000
 
 
 class Statement:
@@ -86,7 +84,7 @@ class Statement:
     def _read_team(
         self, owners: object, pairs: object, budgets: tuple[object, object], safe: tuple[object, object], elements: int
     ) -> None:
-        self.owner = [index("owners", i, LARGEST_TEAM) for i in array("owners", owners, elements)]
+        self.owner = [index("owners", i, limits().robots) for i in array("owners", owners, elements)]
         self.n = n = max(self.owner, default=-1) + 1
         self.choices = tuple(tuple(e for e, i in enumerate(self.owner) if i == k) for k in range(n))
         self.links, self.safe_links = links("links", pairs, n), links("protected_links", safe[1], n)

@@ -12,6 +12,7 @@ from flint import arb, fmpq, fmpq_mat
 
 from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import array, exact, index, need, packed, rows_of
 from ratt_opt.certificates.verifier.work import afford, hold, tick
 
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.statement import Statement
 
 __all__ = ["Bound", "StatedTangent", "read_points", "read_tangents", "seers_of"]
-
-BLOCK = 16
-"""Points whose scores are computed between two looks at the clock."""
 
 
 class Bound(NamedTuple):
@@ -65,13 +63,14 @@ def read_points(about: Statement, points: object) -> list[Bound]:
     """Return for each Fenchel point the score of every element, and the constant of its bound."""
     width = len(about.prior) * about.d**2
     given = array("points", points)
-    reading.check_size("points", len(given) * max(width, len(about.owner)), reading.MOST_CELLS)
+    reading.check_size("points", len(given) * max(width, len(about.owner)), limits().cells)
     fenchel = [_of_all_targets(about, point) for point in given]
     columns = [x for row in about.information for matrix in row for x in matrix.entries()]
     turned = fmpq_mat(len(about.owner), width, columns).transpose()
     scores: list[list[fmpq]] = []
-    for k in range(0, len(fenchel), BLOCK):
-        rows = [x for row, _ in fenchel[k : k + BLOCK] for x in row]
+    size = limits().block
+    for k in range(0, len(fenchel), size):
+        rows = [x for row, _ in fenchel[k : k + size] for x in row]
         block = (fmpq_mat(len(rows) // width, width, rows) * turned).tolist()
         tick()
         for row in block:
@@ -83,7 +82,7 @@ def read_points(about: Statement, points: object) -> list[Bound]:
 def read_tangents(about: Statement, tangents: object) -> list[StatedTangent]:
     """Return the tangents of single targets: ``[target, Y]``, or ``[target, t, v]`` as points of the max-eigenvalue."""
     given = array("tangents", tangents)
-    reading.check_size("tangents", len(given) * about.d**2, reading.MOST_CELLS)
+    reading.check_size("tangents", len(given) * about.d**2, limits().cells)
     found, seers = list[StatedTangent](), cache(partial(_seers, about))
     for stated in given:
         tick()

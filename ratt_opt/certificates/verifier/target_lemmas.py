@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flint import arb, fmpq
 
 from ratt_opt.certificates.verifier.exact_matrices import largest
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.marginals import MarginalBounds
 from ratt_opt.certificates.verifier.reading import array, check_size, exact, fields, index, indices, need, walk
-from ratt_opt.certificates.verifier.statement import LARGEST_TEAM
 from ratt_opt.certificates.verifier.tangents import Bound, StatedTangent, read_tangents, seers_of
 from ratt_opt.certificates.verifier.work import hold, tick
 
@@ -30,10 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["StatedLemma", "TargetInequalities", "least_constant", "options_of"]
 
 ZERO = fmpq(0)
-MOST_TERMS = 20_000_000
-"""Scores that all rows together add up: seconds, and what one file may make of lists that it names again and again."""
-MOST_SCORES = 4_000_000
-"""Scores of rows and of the tangents that they name, in memory at once: half a gigabyte."""
 
 
 class StatedLemma(NamedTuple):
@@ -67,8 +63,8 @@ class TargetInequalities:
         terms = [(inequality.constant, self._scores_of(inequality)) for inequality in used.values()]
         self._terms += sum(1 + len(scores) for _, scores in terms)
         self._cells += len(about.owner)
-        check_size("rows", self._terms, MOST_TERMS)
-        check_size("rows", self._cells, MOST_SCORES)
+        check_size("rows", self._terms, limits().terms)
+        check_size("rows", self._cells, limits().scores)
         scores, constant = [fmpq(0)] * len(about.owner), fmpq(0)
         for summand, own in terms:
             tick()
@@ -154,7 +150,7 @@ def least_constant(
 def _below(node: object, case: Options) -> Iterator[Options]:
     """Yield the cases below a branch: one for each part, and one for the robot's other options."""
     robot, parts = fields("lemma branch", node, "element parts")
-    i = index("lemma branch robot", robot, LARGEST_TEAM)
+    i = index("lemma branch robot", robot, limits().robots)
     need(i in case, "upper proof: a lemma branches on a robot that does not see its target")
     blocks = [indices("lemma branch", part, 10**9) for part in array("lemma branch parts", parts)]
     named = [e for block in blocks for e in block]

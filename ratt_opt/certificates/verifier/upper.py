@@ -12,6 +12,7 @@ from flint import arb, ctx, fmpq
 
 from ratt_opt.certificates.verifier import reading
 from ratt_opt.certificates.verifier.exact_matrices import largest, total
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import (
     array,
     exact,
@@ -23,7 +24,6 @@ from ratt_opt.certificates.verifier.reading import (
     walk,
 )
 from ratt_opt.certificates.verifier.spacing import Spacing
-from ratt_opt.certificates.verifier.statement import PRECISIONS
 from ratt_opt.certificates.verifier.tangents import read_points
 from ratt_opt.certificates.verifier.target_lemmas import TargetInequalities
 from ratt_opt.certificates.verifier.work import hold, tick
@@ -64,7 +64,7 @@ class _Cover(NamedTuple):
 def check_upper(about: Statement, part: object, upper: fmpq) -> int:
     """Check that every plan's worst-case value is at most ``upper``; return the number of leaves."""
     need(upper >= 0, "claim: upper is negative")  # a group of blinded robots only is worth phi(empty set) = 0
-    for precision in PRECISIONS:
+    for precision in limits().precisions:
         with ctx.workprec(precision):
             bounds = upper_bounds(about, part)
             worst = next((b for b in bounds if not b <= upper), None)
@@ -92,7 +92,7 @@ class UpperCheck:
         attacks, points, cuts, tree, covers, tangents, lemmas, usual, rows, spacing = parts
         self._has_covers = isinstance(part, dict) and "covers" in part
         families = array("attacks", attacks)
-        reading.check_size("attacks", len(families) * about.n, reading.MOST_CELLS)
+        reading.check_size("attacks", len(families) * about.n, limits().cells)
         self.groups = [self._groups_left(attack) for attack in families]
         self._points = read_points(about, points)
         self.inequalities = TargetInequalities(about, tangents, lemmas, usual)

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 from flint import arb
 
 from ratt_opt.certificates.verifier import reading
+from ratt_opt.certificates.verifier.limits import SECONDS, VerifierLimits, within
 from ratt_opt.certificates.verifier.lower import check_lower
 from ratt_opt.certificates.verifier.reading import exact, fields, need
 from ratt_opt.certificates.verifier.statement import Statement
 from ratt_opt.certificates.verifier.upper import check_upper
 from ratt_opt.certificates.verifier.verified import Verified
-from ratt_opt.certificates.verifier.work import SECONDS, limited
+from ratt_opt.certificates.verifier.work import limited
 from ratt_opt.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,7 +29,11 @@ __all__ = ["verify_certificate", "verify_document"]
 
 
 def verify_certificate(
-    path: str | Path, *, expected_problem: object = None, time_limit: float | None = SECONDS
+    path: str | Path,
+    *,
+    expected_problem: object = None,
+    time_limit: float | None = SECONDS,
+    limits: VerifierLimits | None = None,
 ) -> Verified:
     """Decide whether the certificate at ``path`` proves its claim.
 
@@ -38,6 +43,7 @@ def verify_certificate(
     expected_problem : the problem record it must be about (``problem_document(problem)``), or a function of the
         record that says how it differs from the one expected, and nothing if it does not (``differences``); any
         when ``None``
+    limits : of memory and work, by kind; those of the library when ``None``
 
     Raises
     ------
@@ -46,7 +52,8 @@ def verify_certificate(
     UndecidedError : neither, within the time and memory that the verifier gives to one file.
     """
     seconds = _checked(time_limit)
-    return verify_document(reading.load(path), expected_problem=expected_problem, time_limit=seconds)
+    with within(limits):
+        return verify_document(reading.load(path), expected_problem=expected_problem, time_limit=seconds)
 
 
 def verify_document(

@@ -13,6 +13,7 @@ from math import inf
 from time import monotonic
 from typing import TYPE_CHECKING
 
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.errors import UndecidedError
 
 if TYPE_CHECKING:
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
     from flint import fmpq, fmpq_mat, fmpz_mat
 
 __all__ = [
-    "SECONDS",
-    "MatrixCost",
     "afford",
     "hold",
     "limited",
@@ -33,27 +32,8 @@ __all__ = [
     "watched",
 ]
 
-SECONDS = 600.0
-"""Seconds for one file, unless the caller says otherwise; proofs of the library for 30 robots take seconds."""
-MOST_BITS = 2**33
-"""Bits of exact numbers held at once (1 GiB)."""
-WIDEST = 2**28
-"""Largest ``d^4 * bits`` of a matrix: its exact inverse takes some 2e-8 s of each (4.6 s at d = 30, 300 bits)."""
 BITS_OF_A_FLOAT = 2200
 """Numerator and common denominator of the widest range that binary64 floats can have, in bits."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MatrixCost:
-    """Time of one exact operation on a matrix.
-
-    ``seconds`` : for each of ``d^4 * bits``, an upper estimate (measured: 4e-11 to 2e-8). A larger one refuses more
-    files at the end of their time; a smaller one lets the limit be overrun.
-    ``short`` : seconds below which an operation is not estimated at all; the estimate takes time, too.
-    """
-
-    seconds: float = 2e-8
-    short: float = 0.1
 
 
 @dataclass(slots=True)
@@ -65,8 +45,6 @@ class _Work:
 
 _CURRENT: ContextVar[_Work | None] = ContextVar("ratt_opt_verifier_work", default=None)
 _WATCHER: ContextVar[Callable[[str], None] | None] = ContextVar("ratt_opt_verifier_watcher", default=None)
-TELLING = 100
-"""Cases of a proof between two words about it: a tenth of a second or so where each is long."""
 
 
 @contextmanager
@@ -81,7 +59,7 @@ def watched(say: Callable[[str], None]) -> Iterator[None]:
 
 def tell(doing: str, done: int, whole: int | None = None) -> None:
     """Say how many cases are done, of how many where that is known; cheap enough for every case."""
-    if done % TELLING == 0 and (say := _WATCHER.get()) is not None:
+    if done % limits().told == 0 and (say := _WATCHER.get()) is not None:
         say(f"{doing}, {done:,} cases" if whole is None else f"{doing}, {done:,} of {whole:,} cases")
 
 
@@ -114,8 +92,8 @@ def hold(number: fmpq, count: int = 1) -> None:
     if work is None:
         return
     work.bits += count * (int(number.p).bit_length() + int(number.q).bit_length())
-    if work.bits > MOST_BITS:
-        raise UndecidedError(f"not decided within {MOST_BITS // 2**23} MiB of exact numbers")
+    if work.bits > (most := limits().bits):
+        raise UndecidedError(f"not decided within {most // 2**23} MiB of exact numbers")
 
 
 def afford(matrix: fmpq_mat | fmpz_mat) -> None:
@@ -124,7 +102,7 @@ def afford(matrix: fmpq_mat | fmpz_mat) -> None:
     Nothing looks at the clock inside such an operation, so its time is estimated before.
     """
     tick()
-    work, d, cost = _CURRENT.get(), matrix.nrows(), MatrixCost()
+    work, d, cost = _CURRENT.get(), matrix.nrows(), limits().matrix
     if work is None or d**4 * BITS_OF_A_FLOAT * cost.seconds <= cost.short:
         return
     whole, unit = matrix.numer_denom() if hasattr(matrix, "numer_denom") else (matrix, 1)
@@ -135,11 +113,12 @@ def afford(matrix: fmpq_mat | fmpz_mat) -> None:
 
 def refuse_wide(matrices: Iterable[fmpq_mat], d: int) -> None:
     """Raise :class:`UndecidedError` if a single operation on one of the matrices would take too long."""
-    if d**4 * BITS_OF_A_FLOAT <= WIDEST:
+    widest = limits().matrix.widest
+    if d**4 * BITS_OF_A_FLOAT <= widest:
         return
     for matrix in matrices:
         tick()
         sizes = [(int(x.p).bit_length(), int(x.q).bit_length()) for x in matrix.entries()]
         bits = max(p for p, _ in sizes) + max(q for _, q in sizes)
-        if d**4 * bits > WIDEST:
+        if d**4 * bits > widest:
             raise UndecidedError(f"not decided: numbers of {bits} bits in matrices of {d} rows are too wide")

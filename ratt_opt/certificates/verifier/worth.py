@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 from flint import arb, ctx, fmpq, fmpq_mat, fmpz_mat
 
 from ratt_opt.certificates.verifier.exact_matrices import definite, total, trace
+from ratt_opt.certificates.verifier.limits import limits
 from ratt_opt.certificates.verifier.reading import need, places
-from ratt_opt.certificates.verifier.statement import PRECISIONS
 from ratt_opt.certificates.verifier.work import afford, hold, tick
 
 if TYPE_CHECKING:
@@ -25,9 +25,6 @@ if TYPE_CHECKING:
     from ratt_opt.certificates.verifier.statement import Statement
 
 __all__ = ["Known", "Worth"]
-
-AT_ONCE = 32
-"""Targets of one weight below one logarithm."""
 
 Known = list[int]
 """L of a set of robots that sense for sure, less the plan's defects: each target's lower triangle over its unit."""
@@ -75,7 +72,7 @@ class Worth:
         is worth the average there at least.
         """
         cases = [list(map(add, known, self._copies(i, count))) for i in others] or [known]
-        worth = any(self._are_worth(precision, cases, count or 1) for precision in PRECISIONS)
+        worth = any(self._are_worth(precision, cases, count or 1) for precision in limits().precisions)
         need(worth, "lower proof: a leaf is worth less than the claim")
 
     def _copies_of(self, robot: int, times: int) -> Known:
@@ -152,10 +149,10 @@ class Worth:
 
     def _logarithms_at(self, _: int) -> list[tuple[fmpq, list[int], arb]]:
         """Group targets by weight, a few at a time, with a ball around their log-determinant without robots."""
-        about, found = self.about, []
+        about, found, block = self.about, [], limits().block
         for weight in dict.fromkeys(about.weights):
             own = [j for j, w in enumerate(about.weights) if w == weight]
-            for few in (own[k : k + AT_ONCE] for k in range(0, len(own), AT_ONCE)):
+            for few in (own[k : k + block] for k in range(0, len(own), block)):
                 tick()
                 before = total(arb(self._units[j] ** about.d / about.prior[j].det()).log() for j in few)
                 found.append((weight, few, before))

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["undominated"]
 
-ROUNDINGS = 1e-15
-"""More than eight roundings: two differences and a product on either side, and the comparison's own."""
-SMALLEST = 1e-290
+ROUNDINGS = 5 * np.finfo(np.float64).eps
+"""More than eight roundings of half of that: two differences and a product on either side, and the comparison's own."""
+SMALLEST = 2.0**60 * np.finfo(np.float64).tiny
 """Products below this lose digits (they are subnormal, or nearly)."""
 FIRST = 4
 """Rows whose diagonals are compared first: they refute most pairs."""

@@ -27,12 +27,6 @@ if TYPE_CHECKING:
 __all__ = ["OUTPUTS", "Sequences", "control_sequences", "extended", "joint_covariance", "output_matrix"]
 
 OUTPUTS = ("mean", "last")
-NOISE_FLOOR = 1e-6
-"""Noise a step for joint states whose steps determine each other (no process noise), as a share of the covariance.
-It makes their prior invertible, and moves values by that share."""
-MOST_SEQUENCES = 20_000
-"""Sequences of one robot at most: twelve controls make 1,728 in three steps and 20,736 in four, whose matrices would
-take gigabytes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,16 +43,16 @@ class Sequences:
         return Sequences(*(readonly(part) for part in chosen))
 
 
-def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motion: TeamMotion) -> Sequences:
+def control_sequences(scenario: Scenario, poses: FloatArray, horizon: int, motion: TeamMotion, most: int) -> Sequences:
     """All sequences of ``horizon`` controls of every robot, robot by robot, the first control slowest.
 
-    InputError : a robot would have too many.
+    InputError : a robot would have more than ``most``.
     """
     owner, controls = [], []
     for i, robot in enumerate(scenario.robots):
         count = len(robot.controls) ** horizon
-        if count > MOST_SEQUENCES:
-            raise InputError("horizon", f"must give robot {i} at most {MOST_SEQUENCES} control sequences", count)
+        if count > most:
+            raise InputError("horizon", f"must give robot {i} at most {most} control sequences", count)
         owner.append(np.full(count, i))
         controls.append(np.array(list(product(_wide(scenario, i), repeat=horizon))))
     owners, sequences = np.concatenate(owner), np.concatenate(controls)
@@ -84,8 +78,14 @@ def _wide(scenario: Scenario, robot: int) -> FloatArray:
     return np.asarray(scenario.controls[scenario.robot == robot])
 
 
-def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float, size: int) -> FloatArray:
-    """(M, r H, r H) of the first ``size`` r numbers of the states in all steps, from the predicted beliefs."""
+def joint_covariance(
+    beliefs: list[Belief], motion: TargetMotion, period: float, size: int, noise_floor: float
+) -> FloatArray:
+    """(M, r H, r H) of the first ``size`` r numbers of the states in all steps, from the predicted beliefs.
+
+    ``noise_floor`` : share of the covariance that is added if steps determine each other (no process noise): the prior
+    of plans must be invertible
+    """
     n_targets, d = beliefs[0].mean.shape
     horizon = len(beliefs)
     joint = np.zeros((n_targets, horizon * d, horizon * d))
@@ -99,7 +99,7 @@ def joint_covariance(beliefs: list[Belief], motion: TargetMotion, period: float,
     if horizon > 1 and np.linalg.eigvalsh(motion.noise(period))[:, 0].min() <= 0:
         sizes = np.diagonal(joint, axis1=1, axis2=2).copy()
         sizes[:, :d] = 0.0  # the first step is known as it is
-        joint += NOISE_FLOOR * sizes[:, None, :] * np.eye(horizon * d)
+        joint += noise_floor * sizes[:, None, :] * np.eye(horizon * d)
     places = np.array([h * d + axis for h in range(horizon) for axis in range(size)])
     return joint[:, places[:, None], places]
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, check_finite, check_integer, check_number, readonly
 from ratt_opt.errors import InputError
-from ratt_opt.missions.live.history import ON_TIME, StampedMeasurement
+from ratt_opt.missions.live.history import StampedMeasurement
 from ratt_opt.missions.live.packets import PacketError
 from ratt_opt.missions.live.state import Measurement
 from ratt_opt.scenario.record import LARGEST
@@ -21,11 +21,6 @@ if TYPE_CHECKING:
     from ratt_opt.missions.world import World
 
 __all__ = ["Arrivals"]
-
-MOST_PERIODS = 10_000
-"""Most periods between two steps. Each is predicted on its own; after that many nothing is known of a target."""
-ROUNDING = 1e-9
-"""Largest asymmetry and most negative eigenvalue of a pose's covariance, relative to its largest entry."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,9 +45,10 @@ class Arrivals:
             return period, now if before is None else before + period
         if now < before:
             raise InputError("now", f"must not be before the last step's {before:.6g} s", now)
-        latest = before + MOST_PERIODS * period
+        most = self.world.model.params.most_periods
+        latest = before + most * period
         if now > latest:
-            rule = f"must be within {MOST_PERIODS} sampling periods of the last step's, by {latest:.6g} s"
+            rule = f"must be within {most} sampling periods of the last step's, by {latest:.6g} s"
             raise InputError("now", rule, now)
         return now - before, now
 
@@ -69,7 +65,7 @@ class Arrivals:
         if unsure.shape != square:
             raise InputError("pose_covariances", f"must have shape {square}", f"shape {unsure.shape}")
         for i, matrix in enumerate(unsure):
-            allowed = ROUNDING * np.abs(matrix).max()
+            allowed = self.world.model.params.pose_rounding * np.abs(matrix).max()
             if np.abs(matrix - matrix.T).max() > allowed or np.linalg.eigvalsh(matrix)[0] < -allowed:
                 rule = "must be symmetric positive semidefinite"
                 raise InputError(f"pose_covariances[{i}]", rule, matrix.tolist())
@@ -123,7 +119,7 @@ class Arrivals:
             return time
         clock = time if now is None else now
         made = check_number(f"{name}.time", stamp) - clock + time
-        near, oldest = ON_TIME * self.world.period, self.state.moments[0].time
+        near, oldest = self.world.on_time, self.state.moments[0].time
         if made > time + max(near, self.skew):
             rule = f"must not be after this step's {clock:.6g} s (by more than the skew, {self.skew:.3g} s)"
             raise PacketError("future", f"{name}.time", rule, stamp)
@@ -133,7 +129,7 @@ class Arrivals:
         return max(made, oldest) if made > time + near else min(max(made, oldest), time)
 
     def _check_known(self, name: str, robot: int, target: int, made: float) -> None:
-        near = ON_TIME * self.world.period
+        near = self.world.on_time
         if made > dict(self.state.lost).get(robot, np.inf) + near:
             raise PacketError("lost robot", f"{name}.robot", "must not be lost when it measured", robot)
         if made > dict(self.state.blinded).get(robot, np.inf) + near:

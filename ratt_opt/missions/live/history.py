@@ -29,10 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.missions.live.gate import Gate, Judgement
     from ratt_opt.missions.world import World
 
-__all__ = ["ON_TIME", "FilterUpdate", "MomentFilter", "StampedMeasurement"]
-
-ON_TIME = 1e-6
-"""Times that differ by less than this share of the sampling period count as one."""
+__all__ = ["FilterUpdate", "MomentFilter", "StampedMeasurement"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +94,7 @@ class MomentFilter:
     def predicted(self, belief: Belief, begin: float, end: float) -> Belief:
         """The belief at ``end``; targets that had not appeared before are left as they are."""
         ahead, time = belief, begin
-        for step in _parts(end - begin, self.world.period):
+        for step in _parts(end - begin, self.world.period, self.world.on_time):
             ahead = ahead.predicted(self.world.motion, step, time)
             time += step
         unborn = self.born >= end
@@ -108,7 +105,7 @@ class MomentFilter:
 
     def _placed(self, moments: Sequence[Moment], time: float) -> int | None:
         """The moment of this time, if there is one; the first is not: what was measured before it is forgotten."""
-        near = ON_TIME * self.world.period
+        near = self.world.on_time
         return next((k for k in range(len(moments) - 1, 0, -1) if abs(moments[k].time - time) <= near), None)
 
     @staticmethod
@@ -132,7 +129,7 @@ class MomentFilter:
         return k
 
     def _repeated(self, moments: Sequence[Moment], k: int, new: StampedMeasurement) -> PacketError | None:
-        near, pair = ON_TIME * self.world.period, (new.measurement.robot, new.measurement.target)
+        near, pair = self.world.on_time, (new.measurement.robot, new.measurement.target)
         made = new.time if new.measurement.time is None else new.measurement.time
         own = moments if new.stamped else moments[k : k + 1]
         times = (
@@ -188,10 +185,10 @@ class MomentFilter:
         return {number: row for row, number in enumerate(self.targets)}
 
 
-def _parts(passed: float, period: float) -> list[float]:
+def _parts(passed: float, period: float, near: float) -> list[float]:
     """Whole periods, and what is left: the motion noise is that of periods."""
-    whole = int(passed / period * (1 + ON_TIME))
+    whole = int(passed / period * (1 + near / period))
     rest = passed - whole * period
-    if whole and abs(rest) <= ON_TIME * period:
+    if whole and abs(rest) <= near:
         return [*[period] * (whole - 1), period + rest]
     return [period] * whole + ([rest] if rest > 0 else [])

@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["Planned", "TimedPlanner"]
 
 LOG = logging.getLogger("ratt_opt.tracker")
-SEARCH_SHARE = 0.7
-"""Share of a step's remaining time for a search. It looks at the clock between nodes, and a node takes a while."""
 LATE = "late"
 
 
@@ -58,12 +56,14 @@ class TimedPlanner:
     """Plans within ``time_limit`` [s] of a step's beginning, or whenever the planner is done if there is no limit.
 
     ``fallback_nodes`` : of each worst case by which known plans are compared if the planner fails; more prove more and
-    take longer (a thousand: some milliseconds).
+    take longer (a thousand: some milliseconds). ``search_share`` : of a step's remaining time, for a search: it looks
+    at the clock between nodes, and a node takes a while.
     """
 
     planner: Planner
     time_limit: float | None
-    fallback_nodes: int = 1000
+    fallback_nodes: int
+    search_share: float
     _running: Future[IntArray] | None = field(default=None, init=False, repr=False)
 
     def __call__(self, asked: PlanRequest, began: float, *, strict: bool) -> Planned:
@@ -85,7 +85,7 @@ class TimedPlanner:
             return Planned(known, LATE if left < 0 else "")
         if left <= 0 or (self._running is not None and not self._running.done()):
             return Planned(known, LATE)  # out of time, or a thread is busy with a plan that nobody waits for
-        budget = Budget(SEARCH_SHARE * left)
+        budget = Budget(self.search_share * left)
         running = self._running = _in_thread(partial(self._within, asked, budget))
         try:
             return Planned(running.result(timeout=left))
@@ -95,11 +95,11 @@ class TimedPlanner:
             budget.interrupt()
             return Planned(known, LATE)
 
-    def __getstate__(self) -> tuple[Planner, float | None, int]:
-        return self.planner, self.time_limit, self.fallback_nodes
+    def __getstate__(self) -> tuple[Planner, float | None, int, float]:
+        return self.planner, self.time_limit, self.fallback_nodes, self.search_share
 
-    def __setstate__(self, state: tuple[Planner, float | None, int]) -> None:
-        (self.planner, self.time_limit, self.fallback_nodes), self._running = state, None
+    def __setstate__(self, state: tuple[Planner, float | None, int, float]) -> None:
+        (self.planner, self.time_limit, self.fallback_nodes, self.search_share), self._running = state, None
 
     def _best_known(self, asked: PlanRequest) -> IntArray:
         """RATT's plan, or the rest of the last plan if more of that is proved to be left by the worst attack."""

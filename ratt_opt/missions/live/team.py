@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, readonly
-from ratt_opt.missions.live.history import ON_TIME
 from ratt_opt.missions.live.tracker import Tracker
 from ratt_opt.problem import Attack
 
@@ -135,7 +134,7 @@ class TeamTrackers:
             if packet.time == time:
                 here[packet.robot] = packet.pose
             else:
-                tracker.state = _moved(tracker.state, packet, ON_TIME * tracker.world.period)
+                tracker.state = _moved(tracker.state, packet, tracker.world.on_time)
         told = [replace(one, time=packet.time) for packet in fresh for one in packet.measurements]
         if tracker.state.attack != standing:
             tracker.attacked(standing)

@@ -111,9 +111,10 @@ class Tracker:
         if time_limit is not None and not check_number("time_limit", time_limit, low=0.0) > 0:
             raise InputError("time_limit", "must be positive", time_limit)
         self.world = World(scenario, model or MissionModel(), horizon)
+        params = self.world.model.params
         self.lag, self.skew = Reception(lag, skew).seconds(self.world.period)
         self.gate, self.strict = gate_of(gate), strict
-        self._plan = TimedPlanner(get_planner(planner), time_limit)
+        self._plan = TimedPlanner(get_planner(planner), time_limit, params.fallback_nodes, params.search_share)
         self.state = self._start() if state is None else self._checked(state)
         self.controls: FloatArray = readonly(self.state.controls[:, 0])
 

@@ -28,12 +28,6 @@ __all__ = [
     "target_motion",
 ]
 
-VELOCITY_STD = 1.0
-"""Standard deviation per axis of the first belief of a velocity [m/s], if a target does not say (``velocity_std``)."""
-TURN_STD = 0.05
-"""Standard deviation of the first belief of a turn rate [rad/s], if a target does not say: half the paper's largest."""
-TURN_NOISE = 0.01
-"""Standard deviation by which a turn rate drifts in one second [rad/s]."""
 ON_GRID = 1e-9
 """Times within this share of a sampling period count as its end."""
 STRAIGHT = 1e-4
@@ -120,7 +114,7 @@ class _EstimatedVelocity(ByValue, TargetMotion):
 
     process_std: FloatArray
     sampling_period: float = 1.0
-    velocity_std: float = VELOCITY_STD
+    velocity_std: float = 1.0
 
     @classmethod
     def of(cls, scenario: Scenario) -> Self:
@@ -172,8 +166,8 @@ class CoordinatedTurn(_EstimatedVelocity):
     Source: Bar-Shalom, Li, Kirubarajan, Estimation with Applications (2001), section 11.7.
     """
 
-    turn_std: float = TURN_STD
-    turn_noise: float = TURN_NOISE
+    turn_std: float = 0.05
+    turn_noise: float = 0.01
     dimension: ClassVar[int] = 5
 
     def predict(self, states: FloatArray, period: float, time: float) -> FloatArray:  # noqa: ARG002

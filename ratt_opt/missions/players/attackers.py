@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.exact import worst_case_attack
@@ -22,21 +23,28 @@ if TYPE_CHECKING:
     Attacker = Callable[[Problem, IntArray, int], Attack | AttackResult]
     OwnAttacker = Callable[[Problem, IntArray], Attack | AttackResult]
 
-__all__ = ["ATTACKERS", "attack_of", "get_attacker"]
-
-NODES = 500_000
-"""Nodes of a worst case on a graph that is not complete, beyond what is exact at once: some ten seconds a step.
-A limit of seconds would make missions depend on the machine."""
+__all__ = ["ATTACKERS", "WorstAttacker", "attack_of", "get_attacker"]
 
 
-def _worst(problem: Problem, plan: IntArray) -> AttackResult:
-    at_once = problem.threat.links_alike or problem.n_robots <= DEFAULT.all_sets.valued
-    return worst_case_attack(problem, plan, max_nodes=None if at_once else NODES, brief=not at_once)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorstAttacker:
+    """Attacker that finds the worst case of each step's plan.
+
+    ``nodes`` : of a worst case on a graph that is not complete, beyond what is exact at once (some ten seconds a step);
+    fewer save time, and the attack may not be the worst. A limit of seconds would make missions depend on the machine.
+    """
+
+    nodes: int = 500_000
+
+    def __call__(self, problem: Problem, elements: IntArray) -> AttackResult:
+        """Attack one step's plan."""
+        at_once = problem.threat.links_alike or problem.n_robots <= DEFAULT.all_sets.valued
+        return worst_case_attack(problem, elements, max_nodes=None if at_once else self.nodes, brief=not at_once)
 
 
 ATTACKERS: dict[str, Attacker] = {
     "none": lambda _problem, _plan, _seed: Attack(),
-    "worst": lambda problem, plan, _seed: _worst(problem, plan),
+    "worst": lambda problem, plan, _seed: WorstAttacker()(problem, plan),
     "bounded_rational": lambda problem, plan, _seed: bounded_rational_attack(problem, plan),
     "greedy": lambda problem, plan, _seed: greedy_attack(problem, plan),
     "random": lambda problem, plan, seed: random_attack(problem, plan, seed=seed),

@@ -26,13 +26,36 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-__all__ = ["FittedSensor", "Residuals", "fit_sensor", "mrclam_residuals"]
+__all__ = ["FitParams", "FittedSensor", "Residuals", "fit_sensor", "mrclam_residuals"]
 
-ROUNDS = 30
-"""Rounds of expectation and maximisation; after some ten the fourth digit of the noise no longer moves."""
-SMALLEST = 1e-9
-"""Standard deviations and variances are at least this, so that a perfect sensor has a likelihood."""
-FEWEST = 20
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FitParams:
+    """Parameters of an estimate of a sensor's noise.
+
+    ``rounds`` : of expectation and maximisation; after some ten the fourth digit of the noise no longer moves
+    ``smallest`` : standard deviation or variance, at least, so that a perfect sensor has a likelihood
+    ``fewest`` : residuals that are enough for an estimate
+    ``outliers`` : share of measurements that the first guess takes for outliers
+    """
+
+    rounds: int = 30
+    smallest: float = 1e-9
+    fewest: int = 20
+    outliers: float = 0.05
+
+    def __post_init__(self) -> None:
+        """Check what no estimate could be made with. ``InputError`` : a number is out of its range."""
+        for name in ("rounds", "fewest"):
+            if not (value := getattr(self, name)) >= 1:
+                raise InputError(f"params.{name}", "must be at least 1", value)
+        if not self.smallest > 0:
+            raise InputError("params.smallest", "must be positive", self.smallest)
+        if not 0 < self.outliers < 1:
+            raise InputError("params.outliers", "must be between 0 and 1", self.outliers)
+
+
+DEFAULT = FitParams()
 
 
 class FittedSensor(Sensor):
@@ -90,6 +113,7 @@ def fit_sensor(
     bearing_error: ArrayLike | None = None,
     *,
     corrections: Mapping[int, int] | None = None,
+    params: FitParams = DEFAULT,
 ) -> FittedSensor:
     """Estimate the noise law, its coefficients, the share of outliers and the gate.
 
@@ -101,13 +125,14 @@ def fit_sensor(
     range_error, bearing_error : (L,) measured minus true [m], [rad]
     corrections : of a folder's labels, see :func:`read_mrclam`; by default the sightings decide, and ``labels`` of the
         result says what
+    params : rounds of the estimate, and the residuals that it needs
 
     The reach is not estimated: a target that was never seen may have been out of reach or absent.
 
     Raises
     ------
-    InputError : fewer than 20 residuals, lengths that differ, a number that is not finite, or corrections without a
-        folder.
+    InputError : fewer residuals than ``params.fewest``, lengths that differ, a number that is not finite, or
+        corrections without a folder.
     FileFormatError : a file of the folder is missing or malformed.
     """
     data = None
@@ -115,8 +140,8 @@ def fit_sensor(
         data = distance = opened_mrclam(distance, corrections)
     elif corrections is not None:
         raise InputError("corrections", "must come with a dataset's folder", dict(corrections))
-    given = _residuals(distance, bearing, range_error, bearing_error)
-    fits = [_Fit.of(given, law) for law in ("std", "variance")]
+    given = _residuals(distance, bearing, range_error, bearing_error, params.fewest)
+    fits = [_Fit.of(given, law, params) for law in ("std", "variance")]
     best = max(fits, key=lambda fit: fit.likelihood)
     (a, b), (c, d) = best.of_range, best.of_bearing
     return FittedSensor(
@@ -132,7 +157,7 @@ def fit_sensor(
 
 
 def _residuals(
-    first: ArrayLike | Residuals | MrclamData, bearing: object, range_error: object, bearing_error: object
+    first: ArrayLike | Residuals | MrclamData, bearing: object, range_error: object, bearing_error: object, fewest: int
 ) -> Residuals:
     if isinstance(first, Residuals):
         found = first
@@ -143,8 +168,8 @@ def _residuals(
         values = (first, bearing, range_error, bearing_error)
         found = Residuals(*(check_finite(n, v, ndim=1) for n, v in zip(names, values, strict=True)))
     lengths = {len(found.distance), len(found.bearing), len(found.range_error), len(found.bearing_error)}
-    if len(lengths) > 1 or min(lengths) < FEWEST:
-        raise InputError("residuals", f"must be of one length, at least {FEWEST}", sorted(lengths))
+    if len(lengths) > 1 or min(lengths) < fewest:
+        raise InputError("residuals", f"must be of one length, at least {fewest}", sorted(lengths))
     return found
 
 
@@ -158,23 +183,24 @@ class _Fit:
     box: float
 
     @classmethod
-    def of(cls, r: Residuals, law: Literal["std", "variance"]) -> _Fit:
+    def of(cls, r: Residuals, law: Literal["std", "variance"], params: FitParams) -> _Fit:
         """Expectation and maximisation, from robust first guesses."""
-        box = max(float(np.ptp(r.range_error) * np.ptp(r.bearing_error)), SMALLEST)
+        smallest = params.smallest
+        box = max(float(np.ptp(r.range_error) * np.ptp(r.bearing_error)), smallest)
         x, y = r.distance, np.abs(r.bearing)
         power = 1 if law == "std" else 2
-        first = [max(1.4826 * float(np.median(np.abs(e))), SMALLEST) ** power for e in (r.range_error, r.bearing_error)]
-        of_range, of_bearing, outliers = (first[0], 0.0), (first[1], 0.0), 0.05
+        first = [max(1.4826 * float(np.median(np.abs(e))), smallest) ** power for e in (r.range_error, r.bearing_error)]
+        of_range, of_bearing, outliers = (first[0], 0.0), (first[1], 0.0), params.outliers
         likelihood = -np.inf
-        for _ in range(ROUNDS):
+        for _ in range(params.rounds):
             inside = (1 - outliers) * _density(r.range_error, _std(of_range, x, law))
             inside *= _density(r.bearing_error, _std(of_bearing, y, law))
             both = inside + outliers / box
             share = inside / both
             likelihood = float(np.log(both).sum())
             outliers = min(max(1 - float(share.mean()), 1e-6), 0.5)
-            of_range = _maximised(r.range_error, x, share, of_range, law)
-            of_bearing = _maximised(r.bearing_error, y, share, of_bearing, law)
+            of_range = _maximised(r.range_error, x, share, of_range, law, smallest)
+            of_bearing = _maximised(r.bearing_error, y, share, of_bearing, law, smallest)
         return cls(law, of_range, of_bearing, outliers, likelihood, box)
 
     def gate(self, r: Residuals) -> float:
@@ -194,13 +220,13 @@ def _density(error: FloatArray, std: FloatArray) -> FloatArray:
     return np.asarray(np.exp(-0.5 * (error / std) ** 2) / (np.sqrt(2 * np.pi) * std))
 
 
-def _maximised(
-    error: FloatArray, x: FloatArray, share: FloatArray, start: tuple[float, float], law: str
+def _maximised(  # noqa: PLR0917
+    error: FloatArray, x: FloatArray, share: FloatArray, start: tuple[float, float], law: str, smallest: float
 ) -> tuple[float, float]:
     """Constant and slope that maximise the weighted likelihood, neither negative."""
     from scipy.optimize import minimize
 
-    scale = max(start[0], SMALLEST)
+    scale = max(start[0], smallest)
     squared = error**2
 
     def loss(z: FloatArray) -> tuple[float, FloatArray]:
@@ -211,4 +237,4 @@ def _maximised(
         return value, scale * np.array([slope.sum(), (slope * x).sum()])
 
     found = minimize(loss, [1.0, start[1] / scale], jac=True, method="L-BFGS-B", bounds=[(1e-3, None), (0, None)])
-    return max(float(found.x[0]) * scale, SMALLEST), float(found.x[1]) * scale
+    return max(float(found.x[0]) * scale, smallest), float(found.x[1]) * scale

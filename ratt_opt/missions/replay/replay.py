@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from ratt_opt.missions.memory import Memory, Pieces
 from ratt_opt.missions.planning import capped
 from ratt_opt.missions.players.attack_models import AttackModel, attack_model
 from ratt_opt.missions.players.attackers import attack_of, get_attacker
-from ratt_opt.missions.replay.cameras import camera_planner
+from ratt_opt.missions.players.planners import elements_of, get_planner
 from ratt_opt.missions.replay.fit_sensor import FittedSensor, fit_sensor
 from ratt_opt.missions.sensing import Reading, group_pieces
 from ratt_opt.missions.world import MissionModel, Threatened, World
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.missions.players.attackers import Attacker, OwnAttacker
+    from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.mrclam_reader import MrclamData
 
 __all__ = ["Replay", "ReplaySettings", "ReplayStep", "replay_mrclam"]
@@ -115,7 +116,7 @@ def replay_mrclam(
     directory: str | Path | MrclamData,
     *,
     steps: int,
-    planner: str = "ratt",
+    planner: str | Planner = "ratt",
     attacker: str | OwnAttacker = "worst",
     attacks: str | AttackModel = "renewed",
     sensor: FittedSensor | None = None,
@@ -131,7 +132,8 @@ def replay_mrclam(
     ----------
     directory : dataset folder, see :func:`read_mrclam`, or the dataset
     steps : T >= 1
-    planner : of the cameras: ``"ratt"``, ``"maxmin"`` (exact), ``"greedy"``, ``"myopic"`` or ``"random"``
+    planner : of the cameras, as in :func:`run_mission`, but none that sees the world; a camera that does not run is an
+        idle robot of ``Problem(at_most=cameras)``
     attacker, attacks : as in :func:`run_mission`
     sensor : noise law and gate; by default fitted to all sightings of the dataset
     settings : when, how many cameras, which budgets
@@ -154,10 +156,10 @@ def replay_mrclam(
     flight = _Replay(data, s, sensor)
     if steps > float(min(poses[-1, 0] for poses in data.poses) - flight.begin) / s.period:
         raise InputError("steps", "must end before the poses do", steps)
-    choose, attack, model = camera_planner(planner), get_attacker(attacker), attack_model(attacks)
+    plan, attack, model = get_planner(planner), get_attacker(attacker), attack_model(attacks)
     for step in range(steps):
         problem = flight.problem(step, model)
-        running = problem.check_plan(choose(problem, s.cameras, s.seed + step))
+        running = elements_of(plan(problem), problem)
         flight.attacked(step, problem, running, (attack, model))
         flight.measure(step, running)
     return Replay(sensor=flight.sensor, steps=tuple(flight.steps), labels=data.labels)
@@ -206,7 +208,8 @@ class _Replay:
             information[2 * i + 1] = sensor.information(poses[i : i + 1], ahead.positions, ahead.position_covariance)[0]
         objective = TraceObjective(ahead.covariance, information)
         owner = np.repeat(np.arange(scenario.n_robots), 2)
-        return self.world.problem(objective, owner, poses, self.threatened)
+        whole = self.world.problem(objective, owner, poses, self.threatened)
+        return replace(whole, at_most=self.settings.cameras)
 
     def attacked(self, step: int, problem: Problem, plan: IntArray, players: tuple[Attacker, AttackModel]) -> None:
         """Combine the failures in force with the attacker's new ones."""

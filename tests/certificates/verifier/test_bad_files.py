@@ -8,8 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, verify_certificate
-from ratt_opt.certificates.verifier import reading
+from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, VerifierLimits, verify_certificate
 from tests.certificates.cases import certified
 from tests.strategies import information_data
 
@@ -24,11 +23,11 @@ def good(tmp_path_factory):
     return document
 
 
-def fault(document, tmp_path, kind=ProofError):
+def fault(document, tmp_path, kind=ProofError, **limits):
     path = tmp_path / "c.json"
     path.write_text(document if isinstance(document, str) else json.dumps(document))
     with pytest.raises(kind) as caught:
-        verify_certificate(path)
+        verify_certificate(path, limits=VerifierLimits(**limits))
     assert len(str(caught.value).splitlines()) == 1
     return str(caught.value)
 
@@ -65,13 +64,12 @@ def test_files_that_are_no_certificate(text, good, tmp_path):
     assert text in fault(FILES[text](good), tmp_path, FileFormatError)
 
 
-def test_unreadable_and_endless_files(tmp_path, monkeypatch, good):
+def test_unreadable_and_endless_files(tmp_path, good):
     with pytest.raises(FileFormatError, match="can be read"):
         verify_certificate(tmp_path / "none.json")
     with pytest.raises(FileFormatError, match="can be read"):
         verify_certificate(tmp_path)
-    monkeypatch.setattr(reading, "LARGEST_FILE", 1000)
-    assert "size of file must be at most 1000; got 1001" in fault(good, tmp_path, FileFormatError)
+    assert "size of file must be at most 1000; got 1001" in fault(good, tmp_path, FileFormatError, file=1000)
 
 
 def negative_weight(d):

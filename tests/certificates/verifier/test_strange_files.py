@@ -8,7 +8,7 @@ from itertools import combinations
 import pytest
 from flint import fmpq
 
-from ratt_opt import FileFormatError, ProofError, verify_certificate
+from ratt_opt import FileFormatError, ProofError, VerifierLimits, verify_certificate
 from ratt_opt.certificates.verifier import duals
 from ratt_opt.certificates.verifier.cases import Cases
 from ratt_opt.certificates.verifier.worth import Worth
@@ -114,8 +114,9 @@ def test_a_deep_tree_is_refused(tmp_path):
     assert "depth" in refusal(tmp_path, written, FileFormatError)
 
 
-def test_more_groups_than_a_check_may_hold(tmp_path, monkeypatch):
-    monkeypatch.setattr(duals, "MOST_LISTED", 100)
+def test_more_groups_than_a_check_may_hold(tmp_path):
     links = list(combinations(range(8), 2))
     written = document(8, links, len(links), cover(8, every_group(8), [0]))
-    assert refusal(tmp_path, written, UndecidedError) == "not decided: more than 100 groups are listed"
+    assert refusal(tmp_path, written, UndecidedError, limits=VerifierLimits(listed=100)) == (
+        "not decided: more than 100 groups are listed"
+    )

@@ -9,11 +9,19 @@ import numpy as np
 import pytest
 from flint import ctx
 
-from ratt_opt import FileFormatError, Problem, ProofError, TraceObjective, exhaustive_optimum, verify_certificate
+from ratt_opt import (
+    CertificateParams,
+    FileFormatError,
+    Problem,
+    ProofError,
+    TraceObjective,
+    VerifierLimits,
+    exhaustive_optimum,
+    verify_certificate,
+)
 from ratt_opt.certificates.stated_inequalities import StatedInequalities
 from ratt_opt.certificates.stated_problem import statement_of
 from ratt_opt.certificates.target_trees import TargetTreeParams, target_trees
-from ratt_opt.certificates.verifier import target_lemmas
 from ratt_opt.certificates.verifier.target_lemmas import TargetInequalities
 from tests.certificates import lemmas
 from tests.certificates.mutants import accepted, changed, is_false, places, variants
@@ -32,9 +40,9 @@ def drawn(seed, kind=None):
     return problem, rng
 
 
-def stated(problem, drawn_lemmas):
+def stated(problem, drawn_lemmas, params=None):
     """Tangents and lemmas as a certificate has them."""
-    found = StatedInequalities(problem)
+    found = StatedInequalities(problem, params or CertificateParams())
     for lemma in drawn_lemmas:
         found._lemma(lemma)
     stated_lemmas = found._proved_lemmas()
@@ -47,10 +55,10 @@ def read(problem, tangents, proved):
         return TargetInequalities(statement_of(problem), tangents, proved, []).lemmas
 
 
-def check_against_all_sets(problem, rng):
+def check_against_all_sets(problem, rng, params=None):
     """Check drawn lemmas, as they are stated and read, against the definition."""
     wanted = [lemmas.drawn_lemma(problem, rng, j) for j in range(problem.objective.n_targets)]
-    tangents, proved = stated(problem, wanted)
+    tangents, proved = stated(problem, wanted, params)
     checked = read(problem, tangents, proved)
     for lemma, claim in zip(wanted, checked, strict=True):
         own = lemmas.touching(problem, claim.target)
@@ -69,10 +77,9 @@ def test_a_lemma_holds_for_every_set_and_its_constant_is_the_least(seed):
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_lemmas_by_base_sets_hold_for_every_set(seed, monkeypatch):
+def test_lemmas_by_base_sets_hold_for_every_set(seed):
     """Gains beside bases, in the place of tangents, for log-dets."""
-    lemmas.prefer_bases(monkeypatch)
-    check_against_all_sets(*drawn(seed, "logdet"))
+    check_against_all_sets(*drawn(seed, "logdet"), lemmas.BASES)
 
 
 def test_one_base_shows_a_lemma_of_marginals():
@@ -212,11 +219,10 @@ def test_no_mutated_lemma_row_or_spacing_hides_a_false_claim_at_length(tmp_path)
     assert sweep(range(40), 0.3, tmp_path) >= 5_000
 
 
-@pytest.mark.parametrize("limit", ["MOST_TERMS", "MOST_SCORES"])
-def test_rows_that_take_too_much_are_refused(limit, tmp_path, monkeypatch):
+@pytest.mark.parametrize("limit", ["terms", "scores"])
+def test_rows_that_take_too_much_are_refused(limit, tmp_path):
     """A short file can name the same inequalities in many rows."""
     problem, rng = drawn(3, "trace")
     lemmas.certified_by_rows(problem, lemmas.by_rows(problem, rng), tmp_path / "rows.json")
-    monkeypatch.setattr(target_lemmas, limit, 3)
     with pytest.raises(FileFormatError, match="size of rows must be at most 3"):
-        verify_certificate(tmp_path / "rows.json")
+        verify_certificate(tmp_path / "rows.json", limits=VerifierLimits(**{limit: 3}))

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from ratt_opt import FileFormatError, InputError, ProofError, verify_certificate
-from ratt_opt.certificates.verifier import work
+from ratt_opt import FileFormatError, InputError, ProofError, VerifierLimits, verify_certificate
 from ratt_opt.certificates.verifier.verify import verify_document
 from ratt_opt.errors import UndecidedError
 
@@ -43,12 +42,12 @@ def _document(d: int, exponent: int, tree: list[Any], upper: float = 1.0) -> dic
 LEAF = {"fenchel": [0], "weights": [1.0]}
 
 
-def _verify(document: dict[str, Any], path: Path, seconds: float) -> float:
+def _verify(document: dict[str, Any], path: Path, seconds: float, limits: VerifierLimits | None = None) -> float:
     """Verify; return the seconds it took."""
     path.write_text(json.dumps(document))
     began = monotonic()
     with pytest.raises(UndecidedError, match="not decided"):
-        verify_certificate(path, time_limit=seconds)
+        verify_certificate(path, time_limit=seconds, limits=limits)
     return monotonic() - began
 
 
@@ -94,9 +93,8 @@ def test_wide_matrices_of_many_targets_end_at_the_limit(d: int, exponent: int, t
     assert _verify(document, tmp_path / "c.json", 0.5) < 5
 
 
-def test_memory_is_a_limit_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(work, "MOST_BITS", 1000)
-    _verify(_document(4, 200, [LEAF]), tmp_path / "c.json", 60.0)
+def test_memory_is_a_limit_too(tmp_path: Path) -> None:
+    _verify(_document(4, 200, [LEAF]), tmp_path / "c.json", 60.0, VerifierLimits(bits=1000))
 
 
 @pytest.mark.parametrize("limit", [0, -1, float("nan"), "1"])
