@@ -119,8 +119,8 @@ def _bound(
     as_latex: bool,
 ) -> None:
     from ratt_opt._files import output_directory
-    from ratt_opt.main_job.bound import SHARES
     from ratt_opt.main_job.bound import bound as main_job
+    from ratt_opt.main_job.params import SHARES
     from ratt_opt.missions.world import MissionModel
     from ratt_opt.report.tables import report_tables
     from ratt_opt.report.write import FILES, write_numbers

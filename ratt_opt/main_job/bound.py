@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
-from time import monotonic, process_time
+from time import process_time
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-import numpy as np
-
-from ratt_opt._params import changed
-from ratt_opt._rounding import down, up
-from ratt_opt._values import counted
-from ratt_opt.attack.edge_cuts.smallest import largest_group_soon
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
 from ratt_opt.budget import Budget, Stop, undisturbed
@@ -23,122 +16,40 @@ from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.graph.largest_group.counting import by_caa
-from ratt_opt.graph.largest_group.spreading import TREES
 from ratt_opt.main_job.assessment import assess, recommended, views_of
+from ratt_opt.main_job.params import QUICK, SHARES
+from ratt_opt.main_job.remarks import omitted_curvatures, omitted_parts, remarks_on_data, remarks_on_params
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
+from ratt_opt.main_job.steps import Steps
 from ratt_opt.missions.first_step import first_step, first_world
 from ratt_opt.missions.players.planners import elements_of, planned_with
 from ratt_opt.missions.world import MissionModel
 from ratt_opt.problem import Plan, Problem, check_problem
-from ratt_opt.running.progress import Step
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.planner_world import scenario_world
 from ratt_opt.scenario.remarks import scenario_remarks
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin.solve import check_limits, nonrobust_search, solve_maxmin
-from ratt_opt.solvers.ratt import bait_and_greedy, equivalent_sensing_attacks, random_plan
+from ratt_opt.solvers.ratt import bait_and_greedy, largest_group_in_share, random_plan
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.bounds.guarantees import Guarantee
     from ratt_opt.curvatures.curvature import Curvature
-    from ratt_opt.graph.largest_group.counting import LargestGroup
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.planner_world import PlannerWorld
     from ratt_opt.solvers.maxmin.params import MaxMinParams
     from ratt_opt.solvers.result import MaxMinResult
 
-__all__ = ["Steps", "bound"]
-
-SECONDS_BETWEEN_LINES = 1.0
-"""A search tells where it stands at most so often: about as fast as a person reads a line."""
-
-
-@dataclass(slots=True)
-class Steps:
-    """``tell`` : called with one line of text, or ``None``; ``seconds`` : wall time of each step that has ended."""
-
-    tell: Callable[[str], None] | None
-    shown: Step = field(default_factory=lambda: Step("planning"))
-    seconds: dict[str, float] = field(default_factory=dict)
-    _last_line: float = -SECONDS_BETWEEN_LINES
-
-    @contextmanager
-    def __call__(self, step: str) -> Iterator[None]:
-        """Tell that a step begins, and keep how long it takes."""
-        self._say(step)
-        began = monotonic()
-        with Step(step) as self.shown:
-            yield
-        self.seconds[step] = monotonic() - began
-
-    def search_line(self, nodes: int, lower: float, upper: float) -> None:
-        """Tell where a search stands, unless that was told just now."""
-        if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
-            self._last_line = monotonic()
-            line = f"{nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}"
-            self.shown.say(line)
-            self._say(f"  {line}")
-
-    def _say(self, line: str) -> None:
-        if self.tell is not None:
-            self.tell(line)
-
+__all__ = ["bound"]
 
 GUARANTEES = ("none", "quick", "full")
 """Modes of the guarantees."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReportParams:
-    """Shares of the time left that the parts of a report may take; a part whose share is spent returns its bracket.
-
-    If all take theirs, the attacks on RATT and four baselines and the non-robust optimum leave 0.92**5 * 0.9 = 59 % to
-    the best plan, which may spend 44 % of the whole; the curvature and the guarantee from it share the rest.
-
-    ``attack`` : for each attack. ``nonrobust`` : for the best plan without attacks, a baseline if it is proved
-    ``optimum`` : for the best plan. ``curvature`` : for curvatures, and then for the guarantees from them
-    ``certificate`` : of the whole time, kept for writing and verifying a certificate; time that is left comes on top
-    ``curvature_gap`` : a curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every
-        guarantee is a power or a ratio of ``1 - curvature``, so that is what an open bracket costs it per factor
-    ``seed`` : of the random baseline, so that a report is reproducible
-    """
-
-    attack: float = 0.08
-    nonrobust: float = 0.1
-    optimum: float = 0.75
-    curvature: float = 0.5
-    certificate: float = 0.25
-    curvature_gap: float = 0.1
-    seed: int = 0
-
-
-SHARES = ReportParams()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class QuickGuarantees:
-    """Time of quick guarantees: more of it narrows curvatures and lets a user wait.
-
-    Of six bearing-only drones the curvature took half a minute, the plan a second.
-
-    ``seconds`` : of the processor [s], so that a busy machine reports what an idle one does; ``slowest`` : seconds of
-    the clock for each of them at most, for functions that wait for something else.
-    """
-
-    seconds: float = 2.0
-    slowest: float = 8.0
-
-    def within(self, budget: Budget, busy: float) -> Budget:
-        """Return these seconds at the pace of the work so far, of which ``busy`` seconds were the processor's."""
-        pace = min(max(1.0, budget.elapsed / busy), self.slowest) if busy > 0 else 1.0
-        return Budget.inside(budget, self.seconds * pace)
-
-
-QUICK = QuickGuarantees()
 TAKEN = ("ratt", "maxmin", "greedy", "myopic", "random", "nonrobust_optimum")
 """Names of a report's own planners."""
 
@@ -205,7 +116,10 @@ def bound(
     with steps("RATT and the baselines"):
         # Asked for once: of a slow function of the user's own these are most of what a short limit has time for.
         single = problem.objective.singletons()
-        alpha_cs, robust = _planned(problem, single, budget)
+        threat = problem.threat
+        largest = by_caa(threat) if threat.links_alike else largest_group_in_share(problem, budget)
+        alpha_cs = problem.n_robots - largest.lower
+        robust = _planned(problem, alpha_cs, single, budget)
         baselines = undisturbed(budget, lambda: tuple(_baselines(problem, single, budget)))
         seen = _world_of(given, model, problem) if planners else None
         baselines += tuple(_own_plans(problem, planners or {}, seen, budget))
@@ -224,7 +138,6 @@ def bound(
             sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
     with steps("certificate"):
         proof, failure = _certified(problem, optimum, certificate, whole, source)
-    largest = _largest_group(problem, problem.n_robots - alpha_cs, budget)
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -238,7 +151,7 @@ def bound(
         total_curvature=c,
         guarantees=sure,
         inapplicable={} if guarantees == "none" else inapplicable_guarantees(problem, alpha_cs),
-        omitted=_omitted(baselines, guarantees, planners or {}) | _omitted_curvatures(guarantees, k=k, c=c),
+        omitted=omitted_parts(baselines, guarantees, planners or {}) | omitted_curvatures(guarantees, k=k, c=c),
         certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
@@ -246,8 +159,8 @@ def bound(
         views=views,
         seeds={"random": SHARES.seed},
         interrupted=whole.stop() is Stop.INTERRUPTED,
-        remarks=_remarks(problem)
-        + _remarks_on(params)
+        remarks=remarks_on_data(problem)
+        + remarks_on_params(params)
         + (scenario_remarks(given) if isinstance(given, Scenario) else ()),
     )
     return _delivered(report.with_certificate(proof), failure)
@@ -261,11 +174,10 @@ def _delivered(report: BoundReport, failure: ProofError | None) -> BoundReport:
     raise failure
 
 
-def _planned(problem: Problem, single: FloatArray, budget: Budget) -> tuple[int, PlanAssessment]:
-    """RATT's plan under attack, and what it took the link attacks to be worth; ``single`` (E,) individual values."""
-    alpha_cs = equivalent_sensing_attacks(problem, budget)
+def _planned(problem: Problem, alpha_cs: int, single: FloatArray, budget: Budget) -> PlanAssessment:
+    """RATT's plan under attack; ``alpha_cs`` : what the link attacks are worth; ``single`` (E,) individual values."""
     plan = replace(bait_and_greedy(problem, problem.alpha_s + alpha_cs, budget, single), alpha_cs=alpha_cs)
-    return alpha_cs, undisturbed(budget, lambda: assess(problem, "ratt", plan, budget.part(SHARES.attack)))
+    return undisturbed(budget, lambda: assess(problem, "ratt", plan, budget.part(SHARES.attack)))
 
 
 def _best(problem: Problem, search: Callable[..., MaxMinResult], budget: Budget) -> tuple[MaxMinResult, PlanAssessment]:
@@ -355,69 +267,6 @@ def _check_planners(planners: Mapping[str, Planner]) -> None:
             raise InputError("planners", f"must have names that are none of {', '.join(TAKEN)}", name)
         if not callable(planner):
             raise InputError(f"planners[{name!r}]", "must be a function of the problem", type(planner).__name__)
-
-
-def _omitted(baselines: tuple[PlanAssessment, ...], guarantees: str, planners: Collection[str]) -> dict[str, str]:
-    """Collect the parts that the report leaves out, with reasons."""
-    planned = {plan.planner for plan in baselines}
-    omitted = {name: "interrupted" for name in planners if name not in planned}
-    if all(plan.planner != "nonrobust_optimum" for plan in baselines):
-        omitted["nonrobust_optimum"] = "the best plan without attack was not found and proved in its share of the time"
-    if guarantees == "none":
-        omitted["guarantees"] = "not asked for"
-    return omitted
-
-
-def _omitted_curvatures(guarantees: str, *, k: Curvature | None, c: Curvature | None) -> dict[str, str]:
-    """Each of the two curvatures that is ``None``, and why; and whether the other could be narrower."""
-    found = k or c
-    if guarantees == "none":
-        return dict.fromkeys(("curvature", "total_curvature"), "guarantees were not asked for")
-    if found is None:
-        why = "the criterion falls, or breaks what it states of itself, by more than rounding"
-        return dict.fromkeys(("curvature", "total_curvature"), why)
-    if k is None:
-        omitted = {"curvature": "it is for submodular criteria; total_curvature is given instead"}
-    else:
-        omitted = {"total_curvature": "the criterion is submodular; curvature is given instead"}
-    if guarantees == "quick" and found.stop is Stop.TIME:
-        omitted["a narrower curvature"] = f"guarantees are quick: {QUICK.seconds:g} s at most"
-    return omitted
-
-
-def _largest_group(problem: Problem, lower: int, budget: Budget) -> LargestGroup:
-    """The smallest largest group with the cut that leaves it; RATT may have proved ``lower`` by tree inequalities."""
-    if problem.threat.links_alike:
-        return by_caa(problem.threat)
-    found = largest_group_soon(replace(problem.threat, alpha_s=0), budget)
-    if found.lower >= lower:
-        return found
-    return replace(found, lower=lower, claimed_lower=lower, method="spreading", reason=TREES)
-
-
-def _remarks_on(params: MaxMinParams | None) -> tuple[str, ...]:
-    """Name the parameters that are not as by default."""
-    told = "" if params is None else ", ".join(f"{place} = {value}" for place, value in changed(params).items())
-    return (f"the best plan was searched for with {told}",) if told else ()
-
-
-def _remarks(problem: Problem) -> tuple[str, ...]:
-    """Collect remarks on the input: elements and robots without information, and matrices that were mended."""
-    f = problem.objective
-    if not isinstance(f, InformationObjective):
-        return ()
-    found = []
-    silent = np.all(f.information == 0, axis=(1, 2, 3))
-    if silent.any():
-        robots = [i for i, own in enumerate(problem.choices) if silent[own].all()]
-        none = f"; none of robot {', '.join(map(str, robots))} tells anything: check its sensor" if robots else ""
-        if silent.all():
-            none = ": no sensor sees any target, so every plan is worth 0"
-        found.append(f"{silent.sum()} of {counted(f.n, 'element')} tell nothing about any target{none}")
-    if f.repaired:
-        mended = f"negative eigenvalues of {f.repaired} of the {f.n * f.n_targets} information matrices were set to 0"
-        found.append(f"{mended}: all values are those of the matrices without them")
-    return tuple(found)
 
 
 def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:

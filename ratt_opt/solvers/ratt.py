@@ -19,6 +19,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.lazy_greedy import LazyGreedy
 
 if TYPE_CHECKING:
+    from ratt_opt.graph.largest_group.counting import LargestGroup
     from ratt_opt.graph.threat import Threat
 
 __all__ = [
@@ -26,6 +27,7 @@ __all__ = [
     "bait_and_greedy",
     "equivalent_sensing_attacks",
     "greedy",
+    "largest_group_in_share",
     "links_worth",
     "myopic",
     "random_plan",
@@ -58,17 +60,22 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
     """
     if check_problem(problem, knows_at_most=True).threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
+    return problem.n_robots - largest_group_in_share(problem, budget).lower
+
+
+def largest_group_in_share(problem: Problem, budget: Budget | None) -> LargestGroup:
+    """Bracket the smallest largest group that link attacks leave, as :func:`equivalent_sensing_attacks` needs it."""
     is_small = problem.n_robots <= LARGEST_LATTICE  # a tenth of a second: the same however busy the machine is
     left = inf if budget is None or is_small else budget.seconds_left
     seconds = None if isinf(left) else max(SIZE_SHARE * left, min(QUICK, HALF * left), AT_ONCE)
-    return links_worth(problem.threat, Budget(seconds))
+    return bound_soon(replace(problem.threat, alpha_s=0), Budget(seconds))
 
 
 def links_worth(threat: Threat, budget: Budget | None = None) -> int:
     """Sensing attacks that the link attacks of a threat are worth: the same number for the same links, without time."""
     if threat.links_alike:
         return caa(threat.graph.n_robots, threat.alpha_c).alpha_cs
-    return threat.graph.n_robots - bound_soon(replace(threat, alpha_s=0), budget or Budget())
+    return threat.graph.n_robots - bound_soon(replace(threat, alpha_s=0), budget or Budget()).lower
 
 
 def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None = None) -> Plan:

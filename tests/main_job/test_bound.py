@@ -11,6 +11,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.errors import UndecidedError
 from tests.certificates.engine import step
+from tests.main_job.engine import step as of_job
 from tests.oracles import brute_force_optimum, brute_force_worst_case
 from tests.strategies import OBJECTIVES, random_problem
 
@@ -141,3 +142,23 @@ def test_without_time_individual_values_are_asked_for_once(robots):
     f = Counted(np.random.default_rng(robots).random(3 * robots))
     ro.bound(ro.Problem(f, np.repeat(np.arange(robots), 3), None, 3, 40), time_limit=0)
     assert f.asked <= f.n + 40
+
+
+def test_the_smallest_largest_group_is_searched_once(monkeypatch):
+    """RATT's bait and the report's group come from the same search."""
+    asked = []
+
+    def counted(real):
+        def searched(threat, budget):
+            found = real(threat, budget)
+            asked.extend([found] if threat.alpha_c else [])  # without link attacks nothing is to be searched
+            return found
+
+        return searched
+
+    of_job(monkeypatch, "link attacks", counted)
+    report = ro.bound(
+        ro.network_scenario("disk-6", 16, 2, alpha_s=2, alpha_c=3, seed=0), guarantees="none", time_limit=2
+    )
+    assert [report.largest_group] == asked
+    assert report.alpha_cs == 16 - report.largest_group.lower > 0

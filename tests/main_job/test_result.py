@@ -236,10 +236,10 @@ def test_a_baseline_that_is_missing_is_named():
 @pytest.mark.parametrize(("busy", "expected"), [(10.0, 2.0), (2.5, 8.0), (0.1, 16.0), (0.0, 2.0)])
 def test_quick_guarantees_have_seconds_of_the_processor(monkeypatch, busy: float, expected: float) -> None:
     """Ten seconds went by: the pace so far, at least one and at most eight, says how many seconds of the clock."""
-    from ratt_opt.main_job import bound
+    from ratt_opt.main_job import params
 
-    whole = bound.Budget(100.0)
-    monkeypatch.setattr(bound.Budget, "elapsed", property(lambda _self: 10.0))
-    given = bound.QUICK.within(whole, busy)
+    whole = params.Budget(100.0)
+    monkeypatch.setattr(params.Budget, "elapsed", property(lambda _self: 10.0))
+    given = params.QUICK.within(whole, busy)
     assert given.time_limit == pytest.approx(expected)
-    assert bound.QUICK.within(bound.Budget(11.0), busy).time_limit <= 1.0
+    assert params.QUICK.within(params.Budget(11.0), busy).time_limit <= 1.0

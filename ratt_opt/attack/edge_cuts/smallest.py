@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
 
-__all__ = ["SizeParams", "bound_soon", "by_subsets", "largest_group_of", "largest_group_soon", "smallest_largest_group"]
+__all__ = ["SizeParams", "bound_soon", "by_subsets", "largest_group_of", "smallest_largest_group"]
 
 METHODS = ("auto", "milp", "spreading", "caa", "partitions", "enumeration", "counting")
 
@@ -179,18 +179,21 @@ def _none_smaller(size: int) -> str:
     return f"no partition into connected groups of at most {size - 1} robots is within the link budget"
 
 
-def bound_soon(threat: Threat, budget: Budget) -> int:
-    """No cut leaves a smaller largest group; mostly the smallest one itself up to some 60 robots.
+def bound_soon(threat: Threat, budget: Budget) -> LargestGroup:
+    """Bracket the smallest largest group by a fixed amount of work; mostly exact up to some 60 robots.
 
     Seconds at hundreds of robots, and without a limit of time the same on every machine: every part ends after a fixed
     amount of work.
     """
-    found = largest_group_soon(threat, budget)
-    return found.lower if found.is_exact else max(found.lower, forced_size_soon(threat, budget))
+    found = _searched_soon(threat, budget)
+    lower = found.lower if found.is_exact else forced_size_soon(threat, budget)
+    if found.lower >= lower:
+        return found
+    return replace(found, lower=lower, claimed_lower=lower, method="spreading", reason=TREES)
 
 
-def largest_group_soon(threat: Threat, budget: Budget) -> LargestGroup:
-    """The bracket that a fixed amount of work gives: exact for most teams of some 60 robots."""
+def _searched_soon(threat: Threat, budget: Budget) -> LargestGroup:
+    """Search all partitions of small teams, and smaller sizes one by one of others."""
     known = by_counting(threat, budget)
     if known.is_exact or threat.graph.n_robots > PARAMS.soon_robots:
         return known

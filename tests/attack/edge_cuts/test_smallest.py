@@ -220,10 +220,10 @@ def test_what_ratt_takes_is_a_bound_at_any_moment(n_robots, seed, density):
     )
     cut = ro.smallest_largest_group(graph, threat.alpha_c, method="spreading", protected_links=protected)
     for seconds in (0.0, None):
-        assert bound_soon(threat, Budget(seconds)) <= cut.upper
+        assert bound_soon(threat, Budget(seconds)).lower <= cut.upper
     exact = ro.smallest_largest_group(graph, threat.alpha_c, protected_links=protected)
     assert exact.is_exact
-    assert bound_soon(threat, Budget()) <= exact.lower
+    assert bound_soon(threat, Budget()).lower <= exact.lower
 
 
 @pytest.mark.parametrize(("n_robots", "cut"), [(14, 0.3), (36, 0.3), (36, 0.5), (60, 0.15), (100, 0.3)])
