@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from numbers import Real
 from typing import TYPE_CHECKING
@@ -24,6 +25,7 @@ from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import or_default
 from ratt_opt.solvers.maxmin.stages import schedule
+from ratt_opt.solvers.maxmin.stages.first_plans import outlast_first_plans
 from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, Moment, run_plan_stages
 from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio
@@ -74,10 +76,11 @@ def solve_maxmin(
     and bound, in the coordinates that are measured (:func:`ratt_opt.measured_coordinates`). Every bound is derived from
     the problem's matrices by the leaf formula of :mod:`ratt_opt.solvers.maxmin.proof`; of the linear programs only
     the multipliers are used. Other set functions are enumerated if that is possible, and bracketed if it is not
-    (``solvers/by_values``); sums of best elements, such as coverage, as a trace, too (``coverage.py``). Of these no
-    plan is worse than RATT's, the greedy and the myopic one: they, their attacks and exchanges from them may overrun
-    the limit by up to ``params.first_plans.beyond`` seconds (0.4). Without a limit the search goes on until its bracket
-    closes; so give one if the team is large.
+    (``solvers/by_values``); sums of best elements, such as coverage, as a trace, too (``coverage.py``).
+
+    No plan is worse than RATT's, the greedy and the myopic one, as far as exact attacks on them end: the three, these
+    attacks and, of functions known by their values, exchanges from them may overrun the limit by up to
+    ``params.first_plans.beyond`` seconds (0.4). Without a limit the search goes on until its bracket closes.
 
     Parameters
     ----------
@@ -147,13 +150,15 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     """
     earlier, params = _plan_of(problem, start), or_default(params)
     alpha_cs = alpha_cs_in_share(problem, budget) if alpha_cs is None else alpha_cs
-    first = ratt(problem, alpha_cs=alpha_cs, budget=budget).elements
+    longer = budget.beyond(params.first_plans.beyond)
+    first = ratt(problem, alpha_cs=alpha_cs, budget=longer).elements
     pool = OutcomePool(problem)
     incumbent = Incumbent(problem, pool, first, budget, params)
     search: UpperBoundPortfolio | None = None
+    state: LowerEnd | None = None
     try:
         pool.list_all(params.outcomes)
-        plans = _first_plans(problem, first, earlier, budget)
+        plans = _first_plans(problem, first, earlier, longer)
         state = LowerEnd(incumbent=incumbent, plans=plans, gap=gap, by_rows=by_rows)
         run_plan_stages(schedule.PLAN_STAGES, state, Moment.BEFORE)
         search = UpperBoundPortfolio(state.known, stages)
@@ -163,6 +168,9 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
         stop = out.stop
     except KeyboardInterrupt:
         stop = budget.interrupt()
+    if state is not None and budget.stop() is Stop.TIME:
+        with suppress(OutOfBudget):
+            outlast_first_plans(state, longer)
     return _result(problem, incumbent, search, stop, gap)
 
 

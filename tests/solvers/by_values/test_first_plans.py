@@ -25,6 +25,7 @@ KINDS = {
     "own sum": lambda rng, n: OwnSum(rng.random((n, 12)) < 0.2),
     "submodular": lambda rng, n: Submodular(ro.FacilityLocation(rng.random((n, 20)) ** 3)),
     "values": lambda rng, n: Opaque(criterion(rng, n)),
+    "measured": criterion,
 }
 ATTACKS = {"none": (0, 0), "blinded": (2, 0), "cuts": (1, 3)}
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from ratt_opt import Problem, random_scenario, ratt, solve_maxmin, worst_case_attack
+from ratt_opt import MaxMinParams, Problem, random_scenario, ratt, solve_maxmin, worst_case_attack
 from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
 from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.params import AdversaryParams, IncumbentParams
+from ratt_opt.solvers.maxmin.params import AdversaryParams, FirstPlanParams, IncumbentParams
 from tests.attack.engine import exchanges_near, first_attack
 from tests.brackets import attains
 
@@ -70,11 +70,15 @@ def test_no_plan_is_attacked_once_the_time_is_up(search: Incumbent, monkeypatch:
 
 @pytest.mark.parametrize("criterion", ["trace", "logdet", "maxeig"])
 def test_what_is_known_at_once_takes_one_attack(criterion: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each planner's plan had one of its own: half a second where a thousand robots lose 300,000 links."""
+    """Each planner's plan had one of its own: half a second where a thousand robots lose 300,000 links.
+
+    So it is without an overrun; with one, attacks are begun as long as some of it is left.
+    """
     attacked = []
     first_attack(monkeypatch, lambda attack: lambda problem, plan: (attacked.append(plan), attack(problem, plan))[1])
     problem = random_scenario(40, 6, alpha_s=2, alpha_c=500, seed=0).problem(criterion)
-    found = solve_maxmin(problem, time_limit=0)
+    no_overrun = MaxMinParams(first_plans=FirstPlanParams(beyond=0.0))
+    found = solve_maxmin(problem, time_limit=0, params=no_overrun)
     assert len(attacked) == 1
     assert found.worst_case is not None
     assert 0 < found.lower <= found.worst_case.upper

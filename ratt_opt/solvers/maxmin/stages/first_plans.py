@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd
 
-__all__ = ["AttackedStage", "BestAttackedStage", "ClimbStage", "QuickValuesStage"]
+__all__ = ["AttackedStage", "BestAttackedStage", "ClimbStage", "QuickValuesStage", "outlast_first_plans"]
 
 
 class AttackedStage(PlanStage):
@@ -77,3 +77,16 @@ class BestAttackedStage(AttackedStage):
     def run(self, state: LowerEnd, budget: Budget) -> None:
         """Attack the best plan so far exactly."""
         state.incumbent.proved.attack(state.incumbent.candidates.best, budget)
+
+
+def outlast_first_plans(state: LowerEnd, longer: Budget) -> None:
+    """Attack the plans that a search began with, beyond its limit, if one may be worth more than is proved so far.
+
+    ``longer`` : the budget and some more seconds
+    """
+    incumbent, share = state.incumbent, state.incumbent.params.first_plans.climb
+    plans = [incumbent.candidates.best, *sorted(state.plans, key=incumbent.pool.plan_value, reverse=True)]
+    for plan in plans:
+        least = incumbent.proved.lower + incumbent.problem.objective.rounding
+        if not longer.is_over and incumbent.pool.plan_value(plan) > least:
+            incumbent.proved.attack(plan, longer.part(share))
