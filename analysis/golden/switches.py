@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 from analysis.schedule import TABLES
 from ratt_opt.attack import params as parameters
-from ratt_opt.attack.params import PackingParams, SetSearchParams
+from ratt_opt.attack.params import SetSearchParams
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
@@ -51,7 +51,6 @@ BOUNDS: dict[str, Patches] = {
     "enumerated columns": ((ThresholdDecision, "_cover", _gives(Answer(verdict=Threshold.OPEN))),),
     "outer polytopes of several robots": _attacked(set_search=SetSearchParams(heavy=((10**9, 1),))),
     "search of sets in depth": _attacked(set_search=SetSearchParams(whole=((10**9, 0),), fewest=1, most=1)),
-    "packing": _attacked(packing=PackingParams(packed=-1)),
 }
 """Patches that switch off one part of the attack each."""
 PLAN_SWITCHES: dict[str, Patches] = {

@@ -14,7 +14,7 @@ from ratt_opt.native.loops import AnnealRecord, loops
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, IntArray
     from ratt_opt.attack.params.groups import AnnealingParams
     from ratt_opt.budget import Budget
     from ratt_opt.graph.communication import Link
@@ -41,13 +41,12 @@ class Partition:
 class Starts:
     """Annealed attacks, one start after the other; deterministic for a seed.
 
-    ``source`` : a team, or (2**N,) the values of all sets of robots
     ``best`` : the best partition so far, ``None`` before the first
     """
 
     def __init__(
         self,
-        source: Team | FloatArray,
+        team: Team,
         links: Links,
         threat: Threat,
         params: AnnealingParams,
@@ -55,16 +54,12 @@ class Starts:
         seed: int = 0,
         moves: int | None = None,
     ) -> None:
-        self._source, self._links, self._threat, self._params = source, links, threat, params
+        self._team, self._links, self._threat, self._params = team, links, threat, params
         self._moves = params.moves if moves is None else moves
         self._rng = np.random.default_rng(seed)
         self._random = self._rng.integers(1, 2**63, 1, np.uint64)
         self._count = 0
-        if isinstance(source, Team):
-            self._table, self._scale, self._work = None, source.whole_value, max(source.work // 8, 1)
-        else:
-            self._table, self._scale, self._work = source, float(np.abs(source).max()), 1
-        self._scale = max(self._scale, 1e-300)
+        self._scale, self._work = max(team.whole_value, 1e-300), max(team.work // 8, 1)
         self.best: Partition | None = None
 
     def next(self, budget: Budget) -> Partition | None:
@@ -102,8 +97,7 @@ class Starts:
         best, best_blind, least, partition = group.copy(), blind.copy(), np.full(1, np.inf), None
         links, steps, part = self._links, moves * len(group), max(self._params.part // self._work, 1)
         record = AnnealRecord(
-            table=None if self._table is None else address(self._table),
-            team=address_of(self._source.record) if isinstance(self._source, Team) else None,
+            team=address_of(self._team.record),
             robots=len(group),
             budget=self._threat.alpha_c,
             start=address(links.start),

@@ -17,9 +17,9 @@ class TeamRecord(Structure):
 @record
 class AnnealRecord(Structure):
     """An annealed attack; arcs of robot i are start[i]..start[i + 1] - 1."""
-    table: Doubles; team: Pointer[TeamRecord]; robots: Int64; budget: Int64; start: Int64s; robot: Int64s; fixed: Bytes
-    seeing: Bytes; group: Int64s; best_group: Int64s; blind: Bytes; best_blind: Bytes; first: Int64; last: Int64
-    steps: Int64; hot: Double; cold: Double; least: Doubles; random: UInt64s
+    team: Pointer[TeamRecord]; robots: Int64; budget: Int64; start: Int64s; robot: Int64s; fixed: Bytes; seeing: Bytes
+    group: Int64s; best_group: Int64s; blind: Bytes; best_blind: Bytes; first: Int64; last: Int64; steps: Int64
+    hot: Double; cold: Double; least: Doubles; random: UInt64s
 
 @record
 class CutAnnealRecord(Structure):

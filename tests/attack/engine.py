@@ -18,7 +18,6 @@ from ratt_opt.attack import attack_tree, exact, survey
 from ratt_opt.attack import params as parameters
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.enumeration import enumerate_by_values
-from ratt_opt.attack.exchanges import exchange_attack
 from ratt_opt.attack.protection import best_links, criticality
 from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
@@ -50,7 +49,6 @@ __all__ = [
     "LARGE",
     "NO_LISTS",
     "NO_TABLES",
-    "PACKED",
     "WAYS",
     "AttackMemory",
     "Search",
@@ -113,7 +111,6 @@ SEARCHES = {
     "annealed attacks and dual prices": lambda task: Once(task, _annealed_then_priced),
     "every attack": lambda task: Once(task, enumerate_by_values),
     "annealed values": lambda task: Once(task, annealed_attacks),
-    "exchanges": lambda task: Once(task, exchange_attack),
 }
 """By the names of their stages; each alone, on any team that its theory is about."""
 
@@ -164,14 +161,8 @@ NO_LISTS = {
     (AttackParams, "set_search.most"): 1,
 }
 """Hardly any search in depth of sets of one size, so that bounds and branches decide."""
-FAMILIES = {(AttackParams, "packing.packed"): -1}
+FAMILIES = {(AttackParams, "largest_groups.few"): 0}
 """All families of a vector of sizes are searched at once."""
-PACKED = {
-    (AttackParams, "packing.packed"): 100,
-    (AttackParams, "packing.nodes_of_set"): 1,
-    (AttackParams, "packing.nodes_of_packing"): 1,
-}
-"""The other groups are packed around each largest one."""
 NO_TABLES = {
     (AttackParams, "all_sets.valued"): 0,
     (AttackParams, "all_sets.enumerated"): 0,
@@ -193,7 +184,6 @@ WAYS = {
     "dense": {(AttackParams, "criterion.dense"): 0.0},
     "no lists": NO_LISTS | {(AttackParams, "size_vectors.alike"): 0.0},
     "families": FAMILIES,
-    "packed": PACKED,
 }
 """Which stages decide, where it is not what the team is like that says so."""
 

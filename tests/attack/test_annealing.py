@@ -14,19 +14,16 @@ from tests.oracles import brute_force_worst_case
 from tests.strategies import team_problem
 
 
-def starts_of(problem, plan, *, has_table=False, **options):
-    source = Team.of(problem.objective, plan)
-    if has_table:
-        chosen = np.zeros((2**problem.n_robots, problem.objective.n), np.bool_)
-        chosen[:, plan] = np.arange(2**problem.n_robots)[:, None] >> np.arange(problem.n_robots) & 1
-        source = problem.objective.evaluate(chosen)
-    return Starts(source, Links.of(problem.threat), problem.threat, AnnealingParams(), **options)
+def starts_of(problem, plan, **options):
+    return Starts(
+        Team.of(problem.objective, plan), Links.of(problem.threat), problem.threat, AnnealingParams(), **options
+    )
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_attacks_are_allowed_and_their_values_are_those_of_the_groups(seed):
     problem, plan = team_problem(seed, 4 + seed % 7)
-    starts = starts_of(problem, plan, seed=seed, moves=100, has_table=seed % 2 == 1)
+    starts = starts_of(problem, plan, seed=seed, moves=100)
     for _ in range(6):
         found = starts.next(Budget())
         attack = problem.check_attack(found.attack(problem.threat))
@@ -40,7 +37,7 @@ def test_attacks_are_allowed_and_their_values_are_those_of_the_groups(seed):
 @pytest.mark.parametrize("seed", range(40))
 def test_a_few_starts_find_the_worst_attacks_of_small_teams(seed):
     problem, plan = team_problem(seed, 3 + seed % 4)
-    starts = starts_of(problem, plan, moves=500, has_table=seed % 2 == 1)
+    starts = starts_of(problem, plan, moves=500)
     for _ in range(12):
         starts.next(Budget())
     assert starts.best.value == pytest.approx(brute_force_worst_case(problem, plan), rel=1e-9, abs=1e-9)

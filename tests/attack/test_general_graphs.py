@@ -76,7 +76,7 @@ def test_greedy_steps_have_a_small_share_of_the_time(monkeypatch):
 
     watch(monkeypatch, "greedy steps", watched)
     prior, information = information_data(np.random.default_rng(1), 30, 3, 2)
-    problem = ro.Problem(ro.TraceObjective(prior, information), range(30), nx.cycle_graph(30), 3, 4)
+    problem = ro.Problem(OwnTrace(prior, information), range(30), nx.cycle_graph(30), 3, 4)
     result = ro.worst_case_attack(problem, np.arange(30), time_limit=2)
     assert 0 < result.lower <= result.upper
     assert len(given) == 1

@@ -32,14 +32,13 @@ from ratt_opt.attack.params.size_vectors import (
     DisjointParams,
     FamilyExchangeParams,
     FamilyParams,
-    PackingParams,
+    LargestGroupParams,
     PossibleSizeParams,
     SizeVectorParams,
 )
 from ratt_opt.attack.params.stages import (
     BranchingParams,
     CriterionParams,
-    EveryAttackParams,
     StageParams,
     ValueAnnealingParams,
 )
@@ -59,13 +58,12 @@ __all__ = [
     "CriterionParams",
     "DisjointParams",
     "DualPriceParams",
-    "EveryAttackParams",
     "FamilyExchangeParams",
     "FamilyParams",
+    "LargestGroupParams",
     "LimitParams",
     "ListedParams",
     "MasterParams",
-    "PackingParams",
     "PolytopeParams",
     "PossibleSizeParams",
     "PricingParams",
@@ -80,7 +78,7 @@ __all__ = [
 ]
 
 AT_LEAST_ONE = (
-    "criterion.starts_for", "every_attack.batch", "all_sets.block", "annealing.longer", "annealing.again",
+    "criterion.starts_for", "branching.at_once", "all_sets.block", "annealing.longer", "annealing.again",
     "bounds.largest_weight", "axis.intervals", "axis.bisections", "family_exchanges.stride",
     "size_vectors.of_each_size", "size_vectors.some_vectors",
 )  # fmt: skip
@@ -96,7 +94,6 @@ class AttackParams:
 
     stages: StageParams = field(default_factory=StageParams)
     criterion: CriterionParams = field(default_factory=CriterionParams)
-    every_attack: EveryAttackParams = field(default_factory=EveryAttackParams)
     value_annealing: ValueAnnealingParams = field(default_factory=ValueAnnealingParams)
     branching: BranchingParams = field(default_factory=BranchingParams)
     all_sets: AllSetsParams = field(default_factory=AllSetsParams)
@@ -117,7 +114,7 @@ class AttackParams:
     axis: AxisParams = field(default_factory=AxisParams)
     size_vectors: SizeVectorParams = field(default_factory=SizeVectorParams)
     family_exchanges: FamilyExchangeParams = field(default_factory=FamilyExchangeParams)
-    packing: PackingParams = field(default_factory=PackingParams)
+    largest_groups: LargestGroupParams = field(default_factory=LargestGroupParams)
     disjoint: DisjointParams = field(default_factory=DisjointParams)
     families: FamilyParams = field(default_factory=FamilyParams)
     family_bound: CoverParams = field(default_factory=CoverParams)

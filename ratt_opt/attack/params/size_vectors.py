@@ -9,7 +9,7 @@ __all__ = [
     "DisjointParams",
     "FamilyExchangeParams",
     "FamilyParams",
-    "PackingParams",
+    "LargestGroupParams",
     "PossibleSizeParams",
     "SizeVectorParams",
 ]
@@ -75,19 +75,14 @@ class FamilyExchangeParams:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PackingParams:
-    """Packing of groups around a largest group, before all families are searched at once.
+class LargestGroupParams:
+    """Largest groups that are looked at one by one, before all families are searched at once.
 
-    ``packed`` : groups of two robots or more, besides the largest, at most
-    ``few`` : largest groups around which others are packed one by one. ``effort`` : nodes of one packing
-    ``nodes_of_set``, ``nodes_of_packing`` : divisors of a threshold's nodes, if families cannot be searched
+    ``few`` : at most. ``nodes_of_set`` : divisor of a threshold's nodes for that number, if families cannot be searched
     """
 
-    packed: int = 2
     few: int = 300
-    effort: int = 3_000
     nodes_of_set: int = 300
-    nodes_of_packing: int = 30
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

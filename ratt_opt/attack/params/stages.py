@@ -7,7 +7,6 @@ from dataclasses import dataclass
 __all__ = [
     "BranchingParams",
     "CriterionParams",
-    "EveryAttackParams",
     "StageParams",
     "ValueAnnealingParams",
 ]
@@ -17,7 +16,8 @@ __all__ = [
 class StageParams:
     """Shares of the remaining budget, and most nodes, of the stages of one attack.
 
-    ``every_attack`` : for all attacks. ``spatial`` : size vectors if targets are not in the plane
+    ``every_attack`` : for all attacks; ``attacks`` : tried one by one at most if all sets of robots can be looked at,
+    ``attacks_beyond`` : otherwise. ``spatial`` : size vectors if targets are not in the plane
     ``greedy`` : greedy steps. ``listed_soon``, ``listed``, ``listed_nodes`` : listed columns before and after annealing
     ``first_bound``, ``first_bound_nodes`` : forced size on dense graphs, at first; ``bound``, ``bound_nodes`` : later
     ``sizes`` : groups of possible sizes. ``annealed_values`` : annealing by values alone
@@ -26,6 +26,8 @@ class StageParams:
     """
 
     every_attack: float = 0.4
+    attacks: int = 20_000
+    attacks_beyond: int = 200_000
     spatial: float = 0.6
     greedy: float = 0.05
     listed_soon: float = 0.4
@@ -58,20 +60,6 @@ class CriterionParams:
     starts_for: int = 24
     inner_starts: int = 3
     inner_nodes: int = 500_000
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EveryAttackParams:
-    """Conditions under which all attacks are enumerated.
-
-    ``share`` : of the time left that it is expected to take at most; a larger one closes more attacks by it, and
-    leaves less time for other stages if it is misjudged
-    ``seconds`` : expected at most without a limit. ``batch`` : blinded sets valued at once, megabytes of matrices
-    """
-
-    share: float = 0.25
-    seconds: float = 5.0
-    batch: int = 2048
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

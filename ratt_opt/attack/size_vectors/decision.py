@@ -1,14 +1,14 @@
 """Decision of a threshold for an attack on a complete graph, by vectors of group sizes.
 
 Some group of an attack is the largest. For each size that it may have, smallest first, all sets below the threshold are
-found. If there is none, larger groups have none either. If there are few, the other groups are packed among the robots
-that each of them leaves. If there are many, or packing takes long, a linear program bounds all families of a vector at
-once (``family_search.py``).
+found. If there is none, larger groups have none either. If there are few and the other groups are single robots, the
+robots that each of them leaves decide. Otherwise a linear program bounds all families of a vector at once
+(``family_search.py``).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["Packer", "Packing", "SizeDecision"]
+__all__ = ["SizeDecision"]
 
 
 @dataclass(slots=True)
@@ -75,16 +75,16 @@ class SizeDecision:
         return Answer(verdict=Threshold.OPEN)
 
     def _decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
-        params = self._team.params.packing
-        lists, is_open, few, effort = SetLists(self._team, self._order), False, params.few, params.effort
+        params = self._team.params.largest_groups
+        lists, is_open, few = SetLists(self._team, self._order), False, params.few
         if len(self._order) > MOST_ROBOTS:
-            few, effort = nodes // params.nodes_of_set, nodes // params.nodes_of_packing
+            few = nodes // params.nodes_of_set
         for size in sorted({vector[0] for vector in self._vectors}):
             sets = self._few_sets(size, threshold, budget, few)
             if sets == []:
                 break
             for vector in [vector for vector in self._vectors if vector[0] == size]:
-                groups, is_decided = self._packed(sets, vector, threshold, budget, effort)
+                groups, is_decided = self._alone(sets, vector, threshold)
                 if not is_decided and groups is None:
                     groups, is_decided = self._searched(lists, vector, threshold, budget)
                 if groups is not None:
@@ -113,19 +113,18 @@ class SizeDecision:
         sets.are_many = len(below) > most
         return None if sets.are_many else sorted(below, key=sets.values.__getitem__)
 
-    def _packed(
-        self, sets: list[frozenset[int]] | None, vector: Sizes, threshold: float, budget: Budget, effort: int
+    def _alone(
+        self, sets: list[frozenset[int]] | None, vector: Sizes, threshold: float
     ) -> tuple[tuple[frozenset[int], ...] | None, bool]:
-        """Groups of a vector around one of its largest ones; whether there are none for sure if there are none."""
-        if sets is None or sum(size > 1 for size in vector[1:]) > self._team.params.packing.packed:
+        """A largest group and all others robots alone; whether there is none for sure if there is none."""
+        if sets is None or max(vector[1:], default=1) > 1:
             return None, False
-        packer, everyone = Packer(self._team, self._must, budget), frozenset(range(len(self._order)))
+        weak = {i for i in range(len(self._order)) if self._team.single[i] < threshold}
         for largest in sets:
-            packing = packer.pack(everyone - largest, vector[1:], threshold, effort)
-            if packing.groups is not None:
-                return (largest, *packing.groups), True
-            if not packing.decided:
-                return None, False
+            missing, others = self._must - largest, weak - largest
+            if missing <= others and len(missing) <= len(vector) - 1 <= len(others):
+                spare = sorted(others - missing)[: len(vector) - 1 - len(missing)]
+                return (largest, *(frozenset([i]) for i in (*missing, *spare))), True
         return None, True
 
     def _searched(
@@ -149,63 +148,3 @@ class SizeDecision:
         for g, group in enumerate(sorted(groups, key=len, reverse=True)):
             label[list(group)], blind[list(group)] = g, False
         return Partition(group=label, blind=blind, value=threshold)
-
-
-@dataclass(frozen=True, slots=True)
-class Packing:
-    """``groups`` below the threshold, or ``None``; ``decided`` says whether ``None`` is proved."""
-
-    groups: tuple[frozenset[int], ...] | None
-    decided: bool = True
-
-
-@dataclass(slots=True)
-class Packer:
-    """Packing of groups for one plan; ``must`` are robots that every outcome contains (they cannot be blinded)."""
-
-    team: Team
-    must: frozenset[int]
-    budget: Budget
-
-    def pack(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int = 0) -> Packing:
-        """Find disjoint groups of these sizes among ``available``, each worth less than ``threshold``.
-
-        Weakest robots first; exact where the sets of the largest size are listed, or ``effort`` nodes suffice.
-        """
-        weak = frozenset(i for i in available if self.team.single[i] < threshold)
-        missing = self.must & available
-        # No group below the threshold holds a robot that alone reaches it.
-        if not missing <= weak or not len(missing) <= sum(sizes) <= len(weak):
-            return Packing(None)
-        quick = self._weakest(weak, sizes, threshold)
-        # Robots on their own are all weak enough here, so only larger groups are searched for.
-        if quick is not None or not sizes or sizes[0] == 1:
-            return Packing(quick)
-        return self._search(weak, sizes, threshold, effort)
-
-    def _weakest(self, available: frozenset[int], sizes: Sizes, threshold: float) -> tuple[frozenset[int], ...] | None:
-        """The weakest robots in order, the largest group first."""
-        order = sorted(available, key=lambda i: (i not in self.must, self.team.single[i], i))[: sum(sizes)]
-        order.sort(key=lambda i: (self.team.single[i], i))
-        groups = []
-        for size in sizes:
-            group, order = frozenset(order[:size]), order[size:]
-            if self.team.value(group) >= threshold:
-                return None
-            groups.append(group)
-        return tuple(groups)
-
-    def _search(self, available: frozenset[int], sizes: Sizes, threshold: float, effort: int) -> Packing:
-        """Each set of the largest size, and the other groups from what it leaves."""
-        outside, decided = frozenset(range(self.team.robots)) - available, True
-        with self.budget.stage(max_nodes=effort) as part:
-            others = replace(self, budget=part)
-            for found in LeastSetSearch(self.team, sizes[0], threshold, outside=outside).run(part):
-                if found is None:
-                    continue
-                packing = others.pack(available - found, sizes[1:], threshold, effort)
-                if packing.groups is not None:
-                    return Packing((found, *packing.groups))
-                decided = decided and packing.decided
-            return Packing(None, decided)
-        return Packing(None, decided=False)

@@ -6,7 +6,6 @@ from functools import cached_property
 from math import isinf
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.enumeration import CriterionEnumeration
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.thresholds.all_sets import can_enumerate_subsets
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
@@ -67,11 +66,6 @@ class AttackState:
     def team(self) -> Team | None:
         """The plan packed for compiled code; ``None`` if the criterion has none."""
         return Team.of(self.objective, self.task.values.plan, self.task.params)
-
-    @cached_property
-    def enumeration(self) -> CriterionEnumeration:
-        """Enumeration of every attack."""
-        return CriterionEnumeration(self.task)
 
     @cached_property
     def search_by_prices(self) -> ThresholdSearch | None:

@@ -1,4 +1,4 @@
-"""Stages: every attack, if these are few."""
+"""Stage: every attack, if these are few."""
 
 from __future__ import annotations
 
@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 from ratt_opt.attack.enumeration import enumerate_by_values
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
-from ratt_opt.graph.few_cuts import MOST_ATTACKS, attacks_are_few
+from ratt_opt.graph.few_cuts import count_attacks
 
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
-    from ratt_opt.budget import Stop
 
 __all__ = ["EveryAttackStage", "EveryValuedAttackStage"]
 
@@ -23,34 +22,33 @@ class EveryAttackStage(Stage[AttackState]):
     name = "every attack"
 
     def applies(self, attack: AttackState) -> bool:
-        """Links not all alike; at most 20,000 attacks, or more than 24 robots and as many as soon are tried."""
-        if attack.threat.links_alike or attacks_are_few(attack.threat):
-            return not attack.threat.links_alike
-        return not (attack.has_table or attack.is_brief) and attack.enumeration.is_soon(attack.task.budget)
+        """Links not all alike; at most 20,000 attacks, or 200,000 beyond 24 robots, not brief."""
+        few, params = attack.has_table or attack.is_brief, attack.task.params.stages
+        most = params.attacks if few else params.attacks_beyond
+        return not attack.threat.links_alike and count_attacks(attack.threat) <= most
 
     def share(self, params: AttackParams) -> Share:
         """Return a part that leaves time for other stages."""
         return Share(part=params.stages.every_attack)
 
-    def run(self, attack: AttackState) -> Stop:
+    def run(self, attack: AttackState) -> None:
         """Every attack, valued in batches."""
-        return attack.enumeration.run(attack.task.budget)
+        enumerate_by_values(attack.task)
 
 
-class EveryValuedAttackStage(Stage[AttackState]):
+class EveryValuedAttackStage(EveryAttackStage):
     """Stage that tries every attack on any set function."""
-
-    name = "every attack"
 
     def applies(self, attack: AttackState) -> bool:
         """More than 20 robots, at most 20,000 attacks; or no link attacks, fewer blinded sets than half a table."""
-        n_robots, threat = attack.n_robots, attack.threat
+        n_robots, threat, params = attack.n_robots, attack.threat, attack.task.params
         if threat.n_cut == 0:
             free = n_robots - len(threat.protected_robots)
             blinded = sum(comb(free, k) for k in range(threat.n_blinded + 1))
-            return bool(blinded <= min(MOST_ATTACKS, 2 ** (n_robots - 1)))
-        return n_robots > attack.task.params.all_sets.valued and not threat.links_alike and attacks_are_few(threat)
+            return bool(blinded <= min(params.stages.attacks, 2 ** (n_robots - 1)))
+        is_large = n_robots > params.all_sets.valued and not threat.links_alike
+        return is_large and count_attacks(threat) <= params.stages.attacks
 
-    def run(self, attack: AttackState) -> Stop:
-        """Every attack, valued one by one."""
-        return enumerate_by_values(attack.task)
+    def share(self, params: AttackParams) -> Share:  # noqa: ARG002
+        """Return the whole budget."""
+        return Share()

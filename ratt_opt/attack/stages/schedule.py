@@ -25,7 +25,7 @@ from ratt_opt.attack.stages.forced_size import (
     PossibleSizesStage,
     TreeInequalitiesStage,
 )
-from ratt_opt.attack.stages.greedy_steps import ExchangesStage, GreedyStepsStage
+from ratt_opt.attack.stages.greedy_steps import GreedyStepsStage
 from ratt_opt.attack.stages.listed_columns import ListedColumnsAgainStage, ListedColumnsStage
 from ratt_opt.attack.stages.single_robots import SingleRobotsStage, SingleValuesStage
 from ratt_opt.attack.stages.size_vectors import SizeVectorsStage, SpatialSizeVectorsStage
@@ -41,7 +41,7 @@ VALUE_STAGES: tuple[Stage[AttackState], ...] = (
     SingleValuesStage(),
     BlindedRobotsStage(),
     EveryValuedAttackStage(),
-    ExchangesStage(),
+    GreedyStepsStage(),
     AnnealedValuesStage(),
     ThresholdsStage(),
     BranchAndBoundLaterStage(),

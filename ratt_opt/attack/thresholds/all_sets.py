@@ -105,22 +105,21 @@ class AllSets:
         source: Team | FloatArray = self._table if self._team is None else self._team
         if self._team is not None and self._team.robots <= self.task.params.all_sets.few:
             source = self._team.all_values()
-        starts = Starts(
-            source,
-            Links.of(self._threat),
-            self._threat,
-            self.task.params.annealing,
-            moves=self.task.params.all_sets.moves * self._graph.robots,
-        )
+        if isinstance(source, Team):  # with a table the next threshold is decided sooner than an attack is annealed
+            self._anneal(source)
+        groups, _ = self._graph.all(self.task.budget)
+        self._below = SetsBelow(source, self._threat.protected_robots, groups, self._threat.n_blinded)
+        return self._below
+
+    def _anneal(self, team: Team) -> None:
+        params, moves = self.task.params, self.task.params.all_sets.moves * self._graph.robots
+        starts = Starts(team, Links.of(self._threat), self._threat, params.annealing, moves=moves)
         try:
-            for _ in range(self.task.params.all_sets.starts):
+            for _ in range(params.all_sets.starts):
                 starts.next(self.task.budget)
         finally:
             if starts.best is not None:
                 self.task.offer(starts.best.attack(self._threat))
-        groups, _ = self._graph.all(self.task.budget)
-        self._below = SetsBelow(source, self._threat.protected_robots, groups, self._threat.n_blinded)
-        return self._below
 
     def _value(self, robots: int | None) -> float:
         """Return the value of a set (bit mask), rounded as attacks' values are; infinite without a set."""

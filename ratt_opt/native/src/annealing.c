@@ -21,12 +21,11 @@ typedef struct {
     int64_t i, j, home, to;
 } Move;
 
-/* Groups by label: what is sensed in each, as sums (robots, width) or, with a table of values, as sets (robots). */
+/* Groups by label: what is sensed in each, as sums (robots, width). */
 typedef struct {
     const Anneal *a;
     int width;
     double *sums, *value, *gained, *lost;
-    uint64_t *sets;
     int64_t *size, cut;
     uint64_t random;
 } State;
@@ -40,21 +39,16 @@ static void sense(State *s, int64_t robot, double sign, double *sums) {
 
 static void fill(State *s) {
     const Anneal *a = s->a;
-    for (int64_t g = 0; g < a->robots && !a->table; g++) memcpy(s->sums + g * s->width, a->team->prior, (size_t)s->width * sizeof(double));
+    for (int64_t g = 0; g < a->robots; g++) memcpy(s->sums + g * s->width, a->team->prior, (size_t)s->width * sizeof(double));
     s->cut = 0;
     for (int64_t i = 0; i < a->robots; i++) {
         int64_t g = a->group[i];
         s->size[g]++;
-        if (!a->blind[i] && a->table) s->sets[g] |= (uint64_t)1 << i;
-        if (!a->blind[i] && !a->table) sense(s, i, 1.0, s->sums + g * s->width);
+        if (!a->blind[i]) sense(s, i, 1.0, s->sums + g * s->width);
         for (int64_t l = a->start[i]; l < a->start[i + 1]; l++)
             if (a->robot[l] > i && a->group[a->robot[l]] != g) s->cut += a->fixed[l] ? UNCUTTABLE : 1;
     }
-    for (int64_t g = 0; g < a->robots; g++) {
-        s->value[g] = 0.0;
-        if (s->size[g]) s->value[g] = a->table ? a->table[s->sets[g]] : value_of(a->team, s->sums + g * s->width);
-        else if (a->table) s->value[g] = -INFINITY;
-    }
+    for (int64_t g = 0; g < a->robots; g++) s->value[g] = s->size[g] ? value_of(a->team, s->sums + g * s->width) : 0.0;
 }
 
 static Move propose(State *s, int64_t n_blinded) {
@@ -112,20 +106,13 @@ static void changes(const Anneal *a, const Move *m, int gains, int *of_i, int *o
     if (m->kind == EXCHANGED && !a->blind[m->j]) *of_j = -sign;
 }
 
-/* Value of the group that gains or loses by a move, of both where they are one; what is sensed goes to `sums` and *set. */
-static double value_after(State *s, const Move *m, int gains, double *sums, uint64_t *set) {
+/* Value of the group that gains or loses by a move, of both where they are one; what is sensed goes to `sums`. */
+static double value_after(State *s, const Move *m, int gains, double *sums) {
     const Anneal *a = s->a;
     int64_t g = gains ? m->to : m->home;
     int of_i, of_j;
     changes(a, m, gains, &of_i, &of_j);
     int empties = m->kind == MOVED && !gains && s->size[m->home] == 1;
-    if (a->table) {
-        uint64_t one = (uint64_t)1 << m->i, other = (uint64_t)1 << m->j;
-        *set = s->sets[g];
-        if (of_i) *set = of_i > 0 ? *set | one : *set & ~one;
-        if (of_j) *set = of_j > 0 ? *set | other : *set & ~other;
-        return empties ? -INFINITY : a->table[*set];
-    }
     memcpy(sums, s->sums + g * s->width, (size_t)s->width * sizeof(double));
     if (of_i) sense(s, m->i, of_i, sums);
     if (of_j) sense(s, m->j, of_j, sums);
@@ -158,10 +145,9 @@ static double largest(const State *s) {
 
 /* Make a move if no group is then worth more than `bound`; the group that gains is valued first. */
 static void try_move(State *s, const Move *m, int64_t cut, double bound, double *energy) {
-    uint64_t gained = 0, lost = 0;
-    double more = value_after(s, m, 1, s->gained, &gained);
+    double more = value_after(s, m, 1, s->gained);
     if (more > bound) return;
-    double less = m->home != m->to ? value_after(s, m, 0, s->lost, &lost) : more;
+    double less = m->home != m->to ? value_after(s, m, 0, s->lost) : more;
     if (less > bound) return;
     double home = s->value[m->home], to = s->value[m->to];
     s->value[m->home] = less, s->value[m->to] = more;
@@ -172,11 +158,6 @@ static void try_move(State *s, const Move *m, int64_t cut, double bound, double 
     }
     *energy = after;
     apply(s, m, cut);
-    if (s->a->table) {
-        if (m->home != m->to) s->sets[m->home] = lost;
-        s->sets[m->to] = gained;
-        return;
-    }
     if (m->home != m->to) memcpy(s->sums + m->home * s->width, s->lost, (size_t)s->width * sizeof(double));
     memcpy(s->sums + m->to * s->width, s->gained, (size_t)s->width * sizeof(double));
 }
@@ -190,15 +171,15 @@ static void keep_better(const State *s, double energy) {
 }
 
 int anneal(const Anneal *a) {
-    int64_t n = a->robots, width = a->table ? 0 : (int64_t)a->team->targets * entries_of(a->team);
+    int64_t n = a->robots, width = (int64_t)a->team->targets * entries_of(a->team);
     double *memory = calloc((size_t)(n * width + n + 2 * width), sizeof(double));
-    int64_t *counts = calloc((size_t)(2 * n), sizeof(int64_t));
+    int64_t *counts = calloc((size_t)n, sizeof(int64_t));
     if (!memory || !counts) {
         free(memory), free(counts);
         return 1;
     }
     double *value = memory + n * width;
-    State s = {a, (int)width, memory, value, value + n, value + n + width, (uint64_t *)counts, counts + n, 0, *a->random};
+    State s = {a, (int)width, memory, value, value + n, value + n + width, counts, 0, *a->random};
     fill(&s);
     int64_t n_blinded = 0;
     for (int64_t i = 0; i < n; i++) n_blinded += a->blind[i];

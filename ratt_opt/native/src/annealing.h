@@ -4,8 +4,7 @@
 
 /* An annealed attack; arcs of robot i are start[i]..start[i + 1] - 1. */
 typedef struct {
-    const double *table;               /* values of all sets, or NULL */
-    const Team *team;                  /* where there is no table */
+    const Team *team;
     int64_t robots, budget;            /* links that may be cut */
     const int64_t *start, *robot;      /* (robots + 1); (arcs) the other end */
     const uint8_t *fixed, *seeing;     /* (arcs), (robots) what cannot be cut, or blinded */

@@ -6,7 +6,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt import AttackParams
 from ratt_opt.budget import Budget
-from tests.attack.engine import FAMILIES, NO_LISTS, PACKED, searched
+from tests.attack.engine import FAMILIES, NO_LISTS, searched
 from tests.brackets import attained, attains, worst_value
 from tests.interrupts import interrupted_at
 from tests.strategies import OBJECTIVES, information_data, random_elements, range_bearing
@@ -33,14 +33,12 @@ def run_large(problem, elements, max_nodes=None):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("way", ["as it is", "families", "divided", "branches", "packed"])
+@pytest.mark.parametrize("way", ["as it is", "families", "divided", "branches"])
 def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
     """As it is; by lists and a search for disjoint sets; by divided nodes and bounds alone; by branches with hardly any
-    search in depth; by packing the other groups around each largest one."""
+    search in depth."""
     if way == "branches":
         go(monkeypatch, NO_LISTS)
-    if way == "packed":
-        go(monkeypatch, NO_LISTS, PACKED)
     if way in {"families", "divided"}:
         go(monkeypatch, FAMILIES)
     if way == "divided":
@@ -74,7 +72,7 @@ def test_many_equal_groups_close(name, blinded):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", [1, 2])
-@pytest.mark.parametrize("limits", [(), (NO_LISTS,), (NO_LISTS, PACKED), (FAMILIES,)])
+@pytest.mark.parametrize("limits", [(), (NO_LISTS,), (FAMILIES,)])
 def test_the_bracket_is_valid_at_every_node_count(name, seed, limits, monkeypatch):
     go(monkeypatch, *limits)
     go(monkeypatch, {(AttackParams, "disjoint.nodes_of_look"): 3})
