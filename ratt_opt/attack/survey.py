@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack, heuristic_result, random_attack
 from ratt_opt.attack.task import PlanValues
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
 __all__ = ["attack_survey"]
-
-EXACT_SHARE = 0.9
-"""Share of a survey's seconds for the exact attack; the heuristics need little."""
 
 
 @interruptible
@@ -58,7 +56,7 @@ def attack_survey(
         attack within the budgets.
     """
     own = Budget.inside(budget, time_limit)
-    seconds = None if time_limit is None else EXACT_SHARE * time_limit
+    seconds = None if time_limit is None else (params or parameters.DEFAULT).protection.survey * time_limit
     brief = math.isinf(own.seconds_left)  # without a limit an exact attack may take hours
     results: ByCurrentName[AttackResult] = ByCurrentName(
         {

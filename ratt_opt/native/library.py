@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+from enum import IntEnum
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
@@ -18,7 +19,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import DTypeLike, NDArray
 
-__all__ = ["Address", "address", "address_of", "check_numbers", "checked", "library"]
+__all__ = ["Address", "Answered", "address", "address_of", "check_numbers", "checked", "library"]
+
+
+class Answered(IntEnum):
+    """Reason why a call of a compiled search came back."""
+
+    FINISHED = 0
+    PAUSED = 1
+    FOUND = 2
+
 
 Number = TypeVar("Number", bound=np.generic)
 Fields = TypeVar("Fields", bound=ctypes.Structure)

@@ -200,7 +200,7 @@ def open_nodes(most: int) -> Way:
 
 def share_of_attacks(share: float) -> Way:
     """Share of the time that the first attacks have where links are chosen."""
-    return {(best_links, "ATTACK_SHARE"): share}
+    return {(AttackParams, "protection.links"): share}
 
 
 def first_attack(monkeypatch: pytest.MonkeyPatch, instead: Callable) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.native.library import address, checked
+from ratt_opt.native.library import Answered, address, checked
 from ratt_opt.native.loops import KeptLinksRecord, loops
 
 if TYPE_CHECKING:
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
 
 __all__ = ["KeptGroups", "groups_above", "proof_tree", "some_groups_above"]
-
-FINISHED, PAUSED = 0, 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,15 +90,15 @@ class _Search:
         if not search:
             raise MemoryError("groups of robots")
         try:
-            code = PAUSED
-            while code != FINISHED and (most_nodes is None or self.record.nodes < most_nodes):
+            code: int = Answered.PAUSED
+            while code != Answered.FINISHED and (most_nodes is None or self.record.nodes < most_nodes):
                 before = self.record.nodes
                 code = loops.search_kept_links(search, budget.nodes_left(PARAMS.nodes_at_once))
                 budget.nodes += self.record.nodes - before
-                if code != PAUSED:
-                    yield self.groups[: self.record.found].astype(np.bool_), code == FINISHED
+                if code != Answered.PAUSED:
+                    yield self.groups[: self.record.found].astype(np.bool_), code == Answered.FINISHED
                     self.record.found = 0
-            if code == PAUSED:
+            if code == Answered.PAUSED:
                 yield self.groups[: self.record.found].astype(np.bool_), False
         finally:
             loops.close_kept_links(search)

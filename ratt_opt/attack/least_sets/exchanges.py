@@ -8,6 +8,7 @@ takes in plain NumPy.
 from __future__ import annotations
 
 from ctypes import byref, c_double
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,8 +26,13 @@ if TYPE_CHECKING:
 
 __all__ = ["descended", "exchange_groups", "exchanged", "weak_sets_of_size"]
 
-BARRED, OUTSIDE, INSIDE = -1, 0, 1
-"""Group of a robot beside one set; a barred one enters no group."""
+
+class Home(IntEnum):
+    """Group of a robot beside one set; a barred one enters no group."""
+
+    BARRED = -1
+    OUTSIDE = 0
+    INSIDE = 1
 
 
 def exchange_groups(  # noqa: PLR0917
@@ -64,12 +70,12 @@ def exchanged(
     ``budget`` : once it is spent the set is left as it is
     """
     start, fixed = frozenset(start), frozenset(fixed)
-    where = np.full(team.robots, OUTSIDE if among is None else BARRED, dtype=np.int64)
-    where[list(among or ())] = OUTSIDE
-    where[list(fixed)] = BARRED
-    where[list(start)] = INSIDE
+    where = np.full(team.robots, Home.OUTSIDE if among is None else Home.BARRED, dtype=np.int64)
+    where[list(among or ())] = Home.OUTSIDE
+    where[list(fixed)] = Home.BARRED
+    where[list(start)] = Home.INSIDE
     exchange_groups(team, 1, where, np.isin(np.arange(team.robots), list(fixed)), budget or Budget())
-    return frozenset(np.flatnonzero(where == INSIDE).tolist())
+    return frozenset(np.flatnonzero(where == Home.INSIDE).tolist())
 
 
 def weak_sets_of_size(team: Team, size: int, budget: Budget | None = None) -> list[frozenset[int]]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ratt_opt.native.library import address, address_of, checked
+from ratt_opt.native.library import Answered, address, address_of, checked
 from ratt_opt.native.loops import SetQuestionRecord, loops
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
 
 __all__ = ["BoundedSets", "SetFamily", "SetSearch"]
-
-FINISHED, FOUND = 0, 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,8 +105,8 @@ class SetSearch:
         value, progress = c_double(0.0), c_int64(0)
         code = loops.next_set_below(self._handle, nodes, address(self._chosen), byref(value), byref(progress))
         self.nodes = progress.value
-        if code != FOUND:
-            return False if code == FINISHED else None
+        if code != Answered.FOUND:
+            return False if code == Answered.FINISHED else None
         return np.asarray(self._chosen | self._inside)
 
     def fill(self, nodes: int, masks: NDArray[np.uint64], values: FloatArray, count: int) -> tuple[int, bool]:
@@ -120,7 +118,7 @@ class SetSearch:
         places = address(self._chosen), address(masks), address(values), byref(rows), byref(progress)
         code = loops.list_sets_below(self._handle, nodes, len(masks), *places)
         self.nodes = progress.value
-        return rows.value, code == FINISHED
+        return rows.value, code == Answered.FINISHED
 
     @property
     def least_open(self) -> float:

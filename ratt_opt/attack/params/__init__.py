@@ -39,6 +39,7 @@ from ratt_opt.attack.params.size_vectors import (
 from ratt_opt.attack.params.stages import (
     BranchingParams,
     CriterionParams,
+    ProtectionParams,
     StageParams,
     ValueAnnealingParams,
 )
@@ -67,6 +68,7 @@ __all__ = [
     "PolytopeParams",
     "PossibleSizeParams",
     "PricingParams",
+    "ProtectionParams",
     "SetExchangeParams",
     "SetSearchParams",
     "SizeVectorParams",
@@ -96,6 +98,7 @@ class AttackParams:
     criterion: CriterionParams = field(default_factory=CriterionParams)
     value_annealing: ValueAnnealingParams = field(default_factory=ValueAnnealingParams)
     branching: BranchingParams = field(default_factory=BranchingParams)
+    protection: ProtectionParams = field(default_factory=ProtectionParams)
     all_sets: AllSetsParams = field(default_factory=AllSetsParams)
     annealing: AnnealingParams = field(default_factory=AnnealingParams)
     bounds: BoundParams = field(default_factory=BoundParams)

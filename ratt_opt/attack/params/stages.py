@@ -7,6 +7,7 @@ from dataclasses import dataclass
 __all__ = [
     "BranchingParams",
     "CriterionParams",
+    "ProtectionParams",
     "StageParams",
     "ValueAnnealingParams",
 ]
@@ -97,3 +98,20 @@ class BranchingParams:
 
     most_open: int = 200_000
     at_once: int = 1_000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProtectionParams:
+    """Questions that ask many exact attacks: surveys, critical robots, the best links; shares of the time left.
+
+    ``survey`` : for the exact attack beside the heuristics, which need little
+    ``base`` : for the plan's own worst attack, which decides the gains to search for. ``bisection`` : for each attack
+    ``links`` : for each exact attack on a choice of links; one needed again while open gets all of it
+    ``ranked`` : attacks, from the worst, by which candidates are ranked: more cost time at every node
+    """
+
+    survey: float = 0.9
+    base: float = 0.3
+    bisection: float = 0.1
+    links: float = 0.2
+    ranked: int = 40

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ratt_opt._rounding import down, up
 from ratt_opt._validation import check_integer
 from ratt_opt._values import ReprMixin
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.exact import worst_case_attack_unrounded
 from ratt_opt.attack.protection.choice_search import best_choice
 from ratt_opt.attack.protection.known_attacks import KnownAttacks
@@ -30,9 +31,6 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
 __all__ = ["BestLinks", "links_to_add", "links_to_protect"]
-
-ATTACK_SHARE = 0.2
-"""Share of the remaining time for each exact attack; one needed again while open gets all of it. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -230,13 +228,14 @@ class _LinkSearch:
         return tuple(links)
 
     def _attack(
-        self, links: tuple[Link, ...], *, share: float = ATTACK_SHARE, max_nodes: int | None = None
+        self, links: tuple[Link, ...], *, share: float | None = None, max_nodes: int | None = None
     ) -> AttackResult:
         """Attack the team that has these links; they become the best if a larger worst case is proved."""
         if self._last is None or self._last[0] != links:
             self._last = links, self.upgrade.changed(links), AttackMemory()
         _, changed, memory = self._last
         nodes = self.max_nodes if max_nodes is None else max_nodes
+        share = parameters.DEFAULT.protection.links if share is None else share
         options = AttackOptions(max_nodes=nodes, budget=self.budget.part(share), memory=memory, brief=True)
         result = worst_case_attack_unrounded(changed, self.values.plan, options)
         self.attacks, self.nodes = self.attacks + 1, self.nodes + result.nodes

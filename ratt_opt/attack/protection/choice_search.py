@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack import params as parameters
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -94,16 +96,12 @@ def _missing(attack: KnownAttack, chosen: int) -> int:
     return attack.need - (attack.links & chosen).bit_count()
 
 
-RANKED = 40
-"""Attacks, from the worst, by which candidates are ranked: more cost time at every node. Not measured."""
-
-
 def _most_useful_first(free: int, withstands: Sequence[KnownAttack]) -> Iterator[int]:
     """The candidates of a mask, those first that block most of the worst attacks; the lowest among equals."""
     size = (free.bit_length() + 7) // 8
     members = np.flatnonzero(_bits(free, size))
     useful = np.zeros(8 * size, dtype=np.int64)
-    for attack in withstands[:RANKED]:
+    for attack in withstands[: parameters.DEFAULT.protection.ranked]:
         useful += _bits(attack.links & free, size)
     for k in members[np.argsort(-useful[members], kind="stable")].tolist():
         yield 1 << k

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 
 from ratt_opt._validation import check_number
+from ratt_opt.attack import params as parameters
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.attack.heuristics import PartialAttack, team_values
 from ratt_opt.attack.task import PlanValues
@@ -30,10 +31,6 @@ __all__ = ["BreakingBudget", "Criticality", "breaking_budgets", "criticality_ran
 
 CERTAIN = 1e-12
 """Gains below this share of the value are rounding, not gains."""
-BASE_SHARE = 0.3
-"""Share of the time for the plan's own worst attack, which decides the gains to search for. Not measured."""
-ATTACK_SHARE = 0.1
-"""Share of the remaining time for each attack of a bisection. Not measured."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +80,7 @@ def criticality_ranking(
     attacked = partial(worst_case_attack, elements=values.plan, max_nodes=max_nodes)
     ranked_links = sorted(problem.communication.links if links is None else set(links))
     replace(problem, protected_links=frozenset(ranked_links))  # refuses a link that does not exist
-    base = attacked(problem, budget=own.part(BASE_SHARE))
+    base = attacked(problem, budget=own.part(parameters.DEFAULT.protection.base))
     targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
     used = [t for t in targets if t in (base.attack.sensing if isinstance(t, int) else base.attack.links)]
     whole = max(values(group) for group in problem.communication.groups())
@@ -213,7 +210,9 @@ def breaking_budgets(
     def attacked(alpha_s: int, alpha_c: int) -> AttackResult:
         stronger = replace(problem, alpha_s=alpha_s, alpha_c=alpha_c)
         plan = stronger.check_plan(elements(stronger) if callable(elements) else elements)
-        return worst_case_attack(stronger, plan, max_nodes=max_nodes, budget=own.part(ATTACK_SHARE), brief=True)
+        return worst_case_attack(
+            stronger, plan, max_nodes=max_nodes, budget=own.part(parameters.DEFAULT.protection.bisection), brief=True
+        )
 
     for alpha_s in range(problem.n_robots + 1):
         if own.is_over:

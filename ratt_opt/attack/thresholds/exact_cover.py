@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +20,15 @@ __all__ = ["ExactCover", "packed"]
 
 STEPS = 2_000_000
 """Columns looked at between two looks at the clock: some milliseconds."""
-FOUND, NONE, PAUSED = 1, 0, -1
 WORD = 64
+
+
+class Cover(IntEnum):
+    """Answer to the search for a cover."""
+
+    PAUSED = -1
+    NONE = 0
+    FOUND = 1
 
 
 def packed(groups: BoolArray) -> NDArray[np.uint64]:
@@ -76,13 +84,14 @@ class ExactCover:
         ------
         OutOfBudget : nodes or seconds are spent, or the user interrupted; the search goes on where it was.
         """
-        record, answer, left = self._record, PAUSED, steps
-        while answer == PAUSED and left > 0:
+        record, left = self._record, steps
+        answer: int = Cover.PAUSED
+        while answer == Cover.PAUSED and left > 0:
             before = record.nodes
             record.most_nodes = before + budget.nodes_left(STEPS)
             answer = loops.next_cover(record, min(STEPS, left))
             left -= STEPS
             budget.nodes += record.nodes - before
-        if answer == FOUND:
+        if answer == Cover.FOUND:
             return [int(k) for k in self._levels["column"][: record.depth + 1]]
-        return False if answer == NONE else None
+        return False if answer == Cover.NONE else None

@@ -18,7 +18,8 @@ import numpy as np
 
 from ratt_opt.attack.params import DEFAULT
 from ratt_opt.attack.team import KEPT_LINKS, WORK, Links, Team
-from ratt_opt.native.library import address, address_of
+from ratt_opt.attack.thresholds.columns import UNIT
+from ratt_opt.native.library import Answered, address, address_of
 from ratt_opt.native.loops import PricingRecord, loops
 from ratt_opt.running.pace import Pace, PaceParams
 
@@ -36,9 +37,6 @@ if TYPE_CHECKING:
 
 __all__ = ["BLINDED", "UNIT", "DualPrices", "GroupSearch", "PricedGroup", "PricingProblem", "Question"]
 
-UNIT = 1 << 20
-"""Unit of integer duals: one link that leaves a group."""
-FINISHED = 0
 NODES = PaceParams(first=2**3, most=2**20)
 """Nodes of a search for groups in one call."""
 BLINDED = 2
@@ -246,7 +244,7 @@ class GroupSearch:
         places = address(table[0]), address(table[1]), byref(rows), byref(progress)
         code = loops.list_groups_below(self.handle, nodes, len(table[0]), *places)
         self.nodes = progress.value
-        return rows.value, code == FINISHED
+        return rows.value, code == Answered.FINISHED
 
 
 @lru_cache(maxsize=KEPT_LINKS)
