@@ -72,22 +72,31 @@ class SetsBelow:
         return following
 
     def _mark_sets(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
+        if not isinstance(self.source, Team):
+            return self._mark_values(self.source, threshold, budget)
         value, following = c_double(inf), c_int64(-1)
         kept = address(self.sizes), byref(value), byref(following)
-        if isinstance(self.source, Team):
-            matters = address(self._outside), address(self._inside), self._n_blinded
-            blocks = len(self._outside)
-            for first in range(0, blocks, BLOCKS):
-                budget.check()
-                last = min(first + BLOCKS, blocks)
-                if loops.mark_below(self.source.record, threshold, first, last, *matters, *kept):
-                    raise MemoryError
-            return value.value, None if following.value < 0 else following.value
-        for first in range(0, len(self.sizes), VALUES):
+        matters = address(self._outside), address(self._inside), self._n_blinded
+        blocks = len(self._outside)
+        for first in range(0, blocks, BLOCKS):
             budget.check()
-            last = min(first + VALUES, len(self.sizes))
-            loops.mark_values_below(address(self.source), threshold, first, last, *kept)
+            last = min(first + BLOCKS, blocks)
+            if loops.mark_below(self.source.record, threshold, first, last, *matters, *kept):
+                raise MemoryError
         return value.value, None if following.value < 0 else following.value
+
+    def _mark_values(self, values: FloatArray, threshold: float, budget: Budget) -> tuple[float, int | None]:
+        least, following = inf, None
+        for first in range(0, len(values), VALUES):
+            budget.check()
+            some = values[first : first + VALUES]
+            is_below, masks = some < threshold, np.arange(first, first + len(some), dtype=np.uint32)
+            self.sizes[first : first + VALUES] = np.where(is_below, np.bitwise_count(masks) + np.uint8(1), np.uint8(0))
+            others = np.where(is_below, inf, some)
+            k = int(others.argmin())
+            if others[k] < least:
+                least, following = float(others[k]), first + k
+        return least, following
 
     def largest_inside(self, group: int) -> int:
         """The largest set below the threshold inside a group that has one, by mask, protected robots included."""

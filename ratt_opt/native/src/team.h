@@ -61,9 +61,6 @@ EXPORTED const char *sources(void);
    the first b robots; together at most `most`. 1 where memory is short, else 0. */
 EXPORTED int mark_below(const Team *team, double threshold, int64_t first, int64_t last, const uint8_t *outside, const uint8_t *inside,
                         int most, uint8_t *sizes, double *next, int64_t *next_set);
-/* The same from the values of all sets. */
-EXPORTED void mark_values_below(const double *values, double threshold, int64_t first, int64_t last, uint8_t *sizes, double *next,
-                                int64_t *next_set);
 /* Let every set with `robot` have at least what it has without it. */
 EXPORTED void spread(uint8_t *sizes, int64_t count, int robot);
 /* The level from which sets are not below a threshold, rounding included; infinite where no value is sure to be as high. */

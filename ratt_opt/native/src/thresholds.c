@@ -102,15 +102,6 @@ int mark_below(const Team *team, double threshold, int64_t first, int64_t last, 
     return 0;
 }
 
-void mark_values_below(const double *values, double threshold, int64_t first, int64_t last, uint8_t *sizes, double *next,
-                       int64_t *next_set) {
-    for (int64_t set = first; set < last; set++) {
-        int below = values[set] < threshold;
-        sizes[set] = below ? (uint8_t)(size_of((uint64_t)set) + 1) : 0;
-        if (!below && values[set] < *next) *next = values[set], *next_set = set;
-    }
-}
-
 void spread(uint8_t *sizes, int64_t count, int robot) {
     int64_t step = (int64_t)1 << robot;
     for (int64_t start = 0; start < count; start += 2 * step) {
