@@ -12,6 +12,7 @@ from ratt_opt._validation import readonly
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.attack.heuristics import heuristic_result
 from ratt_opt.attack.task import PlanValues
+from ratt_opt.main_job.params import SHARES
 from ratt_opt.main_job.result import PlanAssessment
 from ratt_opt.problem import Attack, Plan, Problem
 from ratt_opt.setfunctions.information import InformationObjective
@@ -23,10 +24,6 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
 
 __all__ = ["assess", "recommended", "views_of"]
-
-MOST_SPARED = 12
-"""Robots or links of the worst attack that are spared in turn to find the next worst one; each costs an attack. A map
-shows one next attack, so more would only sharpen which one."""
 
 
 def recommended(plans: Iterable[PlanAssessment]) -> PlanAssessment:
@@ -80,8 +77,8 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
 def _spared(problem: Problem, attack: Attack) -> Iterator[Problem]:
     """The problem with one blinded robot (or cut link, if none is blinded) protected, each in turn."""
     if attack.sensing:
-        for i in sorted(attack.sensing)[:MOST_SPARED]:
+        for i in sorted(attack.sensing)[: SHARES.spared]:
             yield replace(problem, protected_robots=problem.protected_robots | {i})
     else:
-        for link in sorted(attack.links)[:MOST_SPARED]:
+        for link in sorted(attack.links)[: SHARES.spared]:
             yield replace(problem, protected_links=problem.protected_links | {link})

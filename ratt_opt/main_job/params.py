@@ -21,6 +21,10 @@ class ReportParams:
     ``certificate`` : of the whole time, kept for writing and verifying a certificate; time that is left comes on top
     ``curvature_gap`` : a curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every
         guarantee is a power or a ratio of ``1 - curvature``, so that is what an open bracket costs it per factor
+    ``spared`` : robots or links of the worst attack that are spared in turn to find the next worst one, which a map
+        shows; each costs an attack
+    ``saved`` : seconds for a certificate that is written when a report is saved
+    ``lines_apart`` : fewest seconds between two lines of progress of a search: about as fast as a person reads
     ``seed`` : of the random baseline, so that a report is reproducible
     """
 
@@ -30,6 +34,9 @@ class ReportParams:
     curvature: float = 0.5
     certificate: float = 0.25
     curvature_gap: float = 0.1
+    spared: int = 12
+    saved: float = 60.0
+    lines_apart: float = 1.0
     seed: int = 0
 
 

@@ -14,6 +14,7 @@ from ratt_opt.certificates.edge_cuts import certify_size_if_possible
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.errors import ProofError
 from ratt_opt.findings import AssessedPlan, Findings
+from ratt_opt.main_job.params import SHARES
 from ratt_opt.report.document import plan_document, report_document
 from ratt_opt.report.figure import plan_figure
 from ratt_opt.report.latex import latex_of
@@ -71,9 +72,6 @@ class PlanAssessment(AssessedPlan):
         return hash((self.planner, self.controls))
 
 
-SECONDS = 60.0
-
-
 class BoundReport(Findings):
     """Recommended plan, its worst case, and its distance from the best possible.
 
@@ -116,7 +114,7 @@ class BoundReport(Findings):
         return report_document(self)
 
     def save(
-        self, directory: str | Path, *, certificate: bool = True, time_limit: float | None = SECONDS
+        self, directory: str | Path, *, certificate: bool = True, time_limit: float | None = SHARES.saved
     ) -> list[Path]:
         """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
 

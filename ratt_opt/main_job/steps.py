@@ -8,15 +8,13 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import down, up
+from ratt_opt.main_job.params import SHARES
 from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 __all__ = ["Steps"]
-
-SECONDS_BETWEEN_LINES = 1.0
-"""A search tells where it stands at most so often: about as fast as a person reads a line."""
 
 
 @dataclass(slots=True)
@@ -26,7 +24,7 @@ class Steps:
     tell: Callable[[str], None] | None
     shown: Step = field(default_factory=lambda: Step("planning"))
     seconds: dict[str, float] = field(default_factory=dict)
-    _last_line: float = -SECONDS_BETWEEN_LINES
+    _last_line: float = -SHARES.lines_apart
 
     @contextmanager
     def __call__(self, step: str) -> Iterator[None]:
@@ -39,7 +37,7 @@ class Steps:
 
     def search_line(self, nodes: int, lower: float, upper: float) -> None:
         """Tell where a search stands, unless that was told just now."""
-        if monotonic() - self._last_line >= SECONDS_BETWEEN_LINES:
+        if monotonic() - self._last_line >= SHARES.lines_apart:
             self._last_line = monotonic()
             line = f"{nodes} nodes: between {down(lower, 8)} and {up(upper, 8)}"
             self.shown.say(line)

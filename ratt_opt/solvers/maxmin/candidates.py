@@ -11,24 +11,21 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
-    from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 
 __all__ = ["Candidates", "climb"]
 
-LARGEST_BLOCK = 4_000_000
-"""Numbers of a block of plans at most: some tens of megabytes."""
 
-
-def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget, softness: float = 0.0) -> IntArray:
+def climb(pool: OutcomePool, plan: IntArray, budget: Budget, block: int, softness: float = 0.0) -> IntArray:
     """Pass over the robots, each taking the element of largest value on the known outcomes, until none changes.
 
     ``plan`` : (N,) element of each robot to start from; not changed. If the time is up, the pass ends where it is.
+    ``block`` : numbers of a block of plans at most: memory
     ``softness`` : of the mean of small values that judges; 0 for the smallest value
 
     If no more robots may be busy, an idle one takes an element as a busy one rests.
     """
-    objective, limit = pool.objective, problem.choice_limit
+    problem, objective, limit = pool.problem, pool.objective, pool.problem.choice_limit
     current = plan.copy()
     as_it_is = _Rested.of(pool, current, None)
     value = float(_judged(pool.outcome_values(as_it_is.values[0]), softness))
@@ -39,7 +36,7 @@ def climb(problem: Problem, pool: OutcomePool, plan: IntArray, budget: Budget, s
         unchanged += 1
         waits = limit is not None and not limit.busy(current)[i] and limit.busy(current).sum() >= limit.most
         if waits and rested is None:
-            rested = _Rested.one_each(pool, current)
+            rested = _Rested.one_each(pool, current, block)
         least = value + objective.least_improvement(value)  # a tie is no improvement
         found = [one.best_exchange(pool, i, softness) for one in ((rested or []) if waits else [as_it_is])]
         best = max(found, key=lambda exchange: exchange[0], default=(-np.inf, current))
@@ -75,13 +72,13 @@ class _Rested:
         return cls(plans, points, objective.value(points))
 
     @classmethod
-    def one_each(cls, pool: OutcomePool, plan: IntArray) -> list[_Rested]:
-        """Every plan in which one of the busy robots is idle, in blocks of some megabytes."""
+    def one_each(cls, pool: OutcomePool, plan: IntArray, block: int) -> list[_Rested]:
+        """Every plan in which one of the busy robots is idle, in blocks."""
         limit = pool.problem.choice_limit
         assert limit is not None
         busy = np.flatnonzero(limit.busy(plan))
         widest = max(map(len, pool.problem.choices)) * len(pool.groups) * pool.objective.information[0].size
-        most = max(LARGEST_BLOCK // widest, 1)
+        most = max(block // widest, 1)
         return [cls.of(pool, plan, busy[k : k + most]) for k in range(0, len(busy), most)]
 
     def best_exchange(self, pool: OutcomePool, robot: int, softness: float) -> tuple[float, IntArray]:

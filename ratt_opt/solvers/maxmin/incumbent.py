@@ -142,7 +142,7 @@ class Incumbent:
             if part.is_over:
                 self.offer(current, part)
                 return
-            current = climb(self.problem, self.pool, current, part)
+            current = climb(self.pool, current, part, self._shares.block)
             known = len(self.pool)
             if not self.adversary.learn(current):
                 self.offer(current, part)

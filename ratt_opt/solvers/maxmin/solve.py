@@ -26,7 +26,7 @@ from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import or_default
 from ratt_opt.solvers.maxmin.stages import schedule
 from ratt_opt.solvers.maxmin.stages.first_plans import outlast_first_plans
-from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, Moment, run_plan_stages
+from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, PlanPhase, run_plan_stages
 from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
@@ -160,10 +160,10 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
         pool.list_all(params.outcomes)
         plans = _first_plans(problem, first, earlier, longer)
         state = LowerEnd(incumbent=incumbent, plans=plans, gap=gap, by_rows=by_rows)
-        run_plan_stages(schedule.PLAN_STAGES, state, Moment.BEFORE)
+        run_plan_stages(schedule.PLAN_STAGES, state, PlanPhase.BEFORE)
         search = UpperBoundPortfolio(state.known, stages)
         stop = _search_and_prove(search, state, progress)
-        run_plan_stages(schedule.PLAN_STAGES, state, Moment.AFTER)
+        run_plan_stages(schedule.PLAN_STAGES, state, PlanPhase.AFTER)
     except OutOfBudget as out:
         stop = out.stop
     except KeyboardInterrupt:
@@ -204,7 +204,7 @@ def _search_and_prove(search: UpperBoundPortfolio, state: LowerEnd, progress: Pr
         if progress is not None:
             progress(budget.nodes, incumbent.proved.lower, search.upper)
         stop = search.run(slices, progress)
-        if not run_plan_stages(schedule.PLAN_STAGES, state, Moment.BETWEEN):
+        if not run_plan_stages(schedule.PLAN_STAGES, state, PlanPhase.BETWEEN):
             return stop
         slices.begin_turn()
 

@@ -46,9 +46,9 @@ class Walk:
         softness = params.softness * abs(candidates.level)
         most = max(params.fewest, len(self._plan) // 3)
         robots = int(self._rng.integers(params.fewest, most + 1)) if len(self._plan) > 1 else 1
-        plan = self._kicked(robots)
-        plan = climb(incumbent.problem, incumbent.pool, plan, budget, softness)
-        plan = climb(incumbent.problem, incumbent.pool, plan, budget)
+        plan, block = self._kicked(robots), incumbent.params.incumbent.block
+        plan = climb(incumbent.pool, plan, budget, block, softness)
+        plan = climb(incumbent.pool, plan, budget, block)
         self._in_vain += 1
         if incumbent.offer(plan):
             self._in_vain = 0

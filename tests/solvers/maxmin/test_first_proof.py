@@ -26,7 +26,7 @@ from ratt_opt.solvers.maxmin.adversary import Adversary
 from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import IncumbentParams
-from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, Moment, run_plan_stages
+from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, PlanPhase, run_plan_stages
 from ratt_opt.solvers.maxmin.stages.schedule import PLAN_STAGES
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def started(problem: Problem, plan: np.ndarray, **shares: float) -> Incumbent:
     return Incumbent(problem, OutcomePool(problem), plan, Budget(time_limit=3600.0), params)
 
 
-def run(search: Incumbent, moment: Moment, plans: Sequence[np.ndarray] = ()) -> bool:
+def run(search: Incumbent, moment: PlanPhase, plans: Sequence[np.ndarray] = ()) -> bool:
     """Run the stages of a moment."""
     return run_plan_stages(PLAN_STAGES, LowerEnd(incumbent=search, plans=plans), moment)
 
@@ -62,7 +62,7 @@ def test_the_lower_end_is_what_an_attack_on_the_first_plan_proves_with_as_many_n
 
     monkeypatch.setattr(search, "improve", no_time)
     with pytest.raises(OutOfBudget):
-        run(search, Moment.BEFORE, [first])
+        run(search, PlanPhase.BEFORE, [first])
     assert search.proved.lower >= alone.lower > at_once.lower
     assert np.array_equal(search.proved.elements, first)
 
@@ -80,7 +80,7 @@ def test_the_lower_end_is_what_is_known_at_once_of_any_planners_plan(family: str
     at_once = [worst_case_attack(problem, plan, time_limit=0).lower for plan in plans]
     search = started(problem, plans[0], first=0.0)
     search.budget.time_limit = 0.0
-    run(search, Moment.BEFORE, plans)
+    run(search, PlanPhase.BEFORE, plans)
     best = int(np.argmax(at_once))
     assert problem.widen_by_rounding(search.proved.lower, 0.0)[0] == at_once[best] > 0
     assert np.array_equal(search.proved.elements, plans[best])
@@ -122,7 +122,7 @@ def test_of_the_plan_that_more_is_proved_of_more_is_proved_in_the_end(
     monkeypatch.setattr(Adversary, "attack", attack)
     search.proved.attack(first, Budget())
     search.proved.attack(best, Budget())
-    assert not run(search, Moment.BETWEEN)
+    assert not run(search, PlanPhase.BETWEEN)
     assert attacked == [True, False, True, False]
     assert search.proved.lower == pytest.approx(0.98 * known)
 
@@ -159,7 +159,7 @@ def test_on_a_network_the_plan_that_more_is_proved_of_gets_the_rest(
     known = search.pool.plan_value(first)
     attacks = _Attacks(search, first, [*ends, (False, 0.5)])
     monkeypatch.setattr(Adversary, "attack", attacks)
-    assert not run(search, Moment.BETWEEN)
+    assert not run(search, PlanPhase.BETWEEN)
     assert attacks.attacked[:3] == [is_first for is_first, _ in ends]
     assert search.proved.lower >= 0.95 * known
     level = search.candidates.level
@@ -186,7 +186,7 @@ def test_of_a_short_search_on_a_network_the_first_attack_has_nearly_all(
     first, budget = ratt(problem).elements, Budget(time_limit=seconds)
     monkeypatch.setattr("ratt_opt.budget.monotonic", lambda: budget.started)
     with pytest.raises(OutOfBudget):
-        run(Incumbent(problem, OutcomePool(problem), first, budget), Moment.BEFORE, [first])
+        run(Incumbent(problem, OutcomePool(problem), first, budget), PlanPhase.BEFORE, [first])
     assert min(seconds, 1.0) >= parts[0] >= 0.9 * min(seconds, 1.0)
 
 
@@ -202,8 +202,8 @@ def test_a_search_goes_on_where_another_plan_seems_as_good_as_the_one_refuted() 
         search.candidates.add(plan)
     assert search.candidates.best.tolist() == weak.tolist()
     level = search.candidates.level
-    assert run(search, Moment.BETWEEN)
+    assert run(search, PlanPhase.BETWEEN)
     assert search.candidates.level == level
     assert search.candidates.best.tolist() == strong.tolist()
-    assert run(search, Moment.BETWEEN)
+    assert run(search, PlanPhase.BETWEEN)
     assert search.is_proved

@@ -32,11 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CoverSearch"]
 
-NEGLIGIBLE = 1e-6
-"""Shares that count as none."""
-NO_MULTIPLIER = 1e-9
-"""Multipliers that count as none."""
-
 
 class Relaxed:
     """A relaxed plan ``x`` (E,), its ``v``, and the covers with multipliers: numbers, and weights that sum to 1."""
@@ -94,7 +89,7 @@ class CoverProgram:
         if not answer.is_optimal:
             return None
         duals = answer.duals[self._first :]
-        active = np.flatnonzero(duals > NO_MULTIPLIER)
+        active = np.flatnonzero(duals > self._params.no_multiplier)
         covers = np.array(self._rows, dtype=np.int64)[active]
         for k in covers.tolist():
             self._used[k] = self._solves
@@ -194,7 +189,7 @@ class CoverLevelSearch(LevelSearch):
         problem = self._elements.problem
         objective = problem.information_objective
         mixed = np.zeros((problem.n_robots, *objective.prior.shape))
-        used = np.flatnonzero(x > NEGLIGIBLE)
+        used = np.flatnonzero(x > self._separation.params.separation.negligible)
         np.add.at(mixed, problem.robot[used], x[used, None, None, None] * objective.information[used])
         self._incumbent.adversary.learn_relaxed(mixed)
         return self._separation.partitions.add_cuts_of(self._incumbent.pool)

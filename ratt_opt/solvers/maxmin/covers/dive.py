@@ -24,7 +24,6 @@ __all__ = ["BY_COVER", "BY_SUM", "CoverSums", "Dive", "DiveProof"]
 
 BY_COVER, BY_SUM, TRIED = 0, 1, 2
 """Reason that forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
-FIRST_ROOM = 64
 
 
 class Stack:
@@ -114,7 +113,7 @@ class CoverSums:
 
     def __init__(self, elements: int, params: CoverSearchParams) -> None:
         self._params = params
-        self._elements, self._terms, self._used = elements, np.zeros((FIRST_ROOM, elements)), np.zeros(FIRST_ROOM)
+        self._elements, self._terms, self._used = elements, np.zeros((params.sums, elements)), np.zeros(params.sums)
         self.leaves: list[CoverLeaf] = []
 
     def add(self, covers: IntArray, weights: FloatArray, terms: FloatArray) -> None:

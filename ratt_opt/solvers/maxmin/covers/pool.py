@@ -27,12 +27,10 @@ if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
+    from ratt_opt.solvers.maxmin.params import SeparationParams
     from ratt_opt.solvers.maxmin.proof import Cover
 
 __all__ = ["CoverPool", "cover_bound"]
-
-FIRST_ROOM, GROWTH = 256, 2
-NEGLIGIBLE = 1e-6
 
 
 def cover_bound(problem: Problem, cover: Cover) -> float:
@@ -60,12 +58,12 @@ class CoverPool:
     ``level`` : (K,) the least level that the cover is true for
     """
 
-    def __init__(self, choices: CoverChoices) -> None:
-        self._choices = choices
+    def __init__(self, choices: CoverChoices, params: SeparationParams) -> None:
+        self._choices, self._params = choices, params
         self._known: dict[tuple[int, bytes], int] = {}
         self._counted = 0
         self._dense = np.zeros((0, choices.elements.count))
-        self._hold(FIRST_ROOM, 1)
+        self._hold(params.room, 1)
 
     def _hold(self, room: int, groups: int) -> None:
         """Begin empty arrays for that many covers, of partitions into that many groups at most."""
@@ -92,7 +90,7 @@ class CoverPool:
         if size < room and groups <= widest:
             return
         old = self._arrays
-        self._hold(room if size < room else GROWTH * room, max(groups, widest))
+        self._hold(room if size < room else 2 * room, max(groups, widest))
         self.record.size = size
         for new, was in zip(self._arrays, old, strict=True):
             new[tuple(map(slice, was.shape))] = was
@@ -124,7 +122,7 @@ class CoverPool:
         """
         self._count()
         counted = self._dense[: len(self)] @ price
-        found = np.flatnonzero((counted < enough - NEGLIGIBLE) & (self.level[: len(self)] <= level))
+        found = np.flatnonzero((counted < enough - self._params.negligible) & (self.level[: len(self)] <= level))
         return [int(k) for k in found[np.argsort(counted[found], kind="stable")][:most]]
 
     def keep_latest(self, count: int) -> None:

@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Partitions", "Separation", "Ways"]
 
-NEGLIGIBLE = 1e-6
-"""Violations that count as none."""
-
 
 class Ways:
     """Partitions ``of`` (P, S) of groups, padded by -1, in the ``order`` (P,) in which they are tried; it changes.
@@ -133,7 +130,7 @@ class Separation:
     def __init__(self, problem: Problem, params: MaxMinParams | None = None) -> None:
         self.problem, self.choices, self.params = problem, CoverChoices.of(problem), or_default(params)
         self._params = self.params.separation
-        self.partitions, self.pool = Partitions(problem, self._params.listed), CoverPool(self.choices)
+        self.partitions, self.pool = Partitions(problem, self._params.listed), CoverPool(self.choices, self._params)
         self._rng = np.random.default_rng(0)
         self.enough = self.choices.enough
         self.count = self.choices.count[self.choices.owner]
@@ -177,7 +174,7 @@ class Separation:
             for g in own:
                 if g not in completed:
                     paid[g], completed[g] = self.choices.keep(self._inside[g], price, level, kept[g])
-            if (counted := float(paid[own].sum())) < most - NEGLIGIBLE:
+            if (counted := float(paid[own].sum())) < most - params.negligible:
                 found.append((counted, p))
         found.sort()
         return [self._cover(p, kept, completed, level) for _, p in found[: params.added]]

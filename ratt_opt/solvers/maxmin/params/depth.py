@@ -76,6 +76,7 @@ class CoverSearchParams:
     ``room``, ``recorded`` : nodes of a record at first and at most, 160 MB
     ``ways`` : partitions that are tried at a node, those that last led to a dead end first
     ``sums`` : that are looked at: those of most use lately; ``fading`` : weight of earlier use at each new one
+    ``no_multiplier`` : multipliers of the linear program up to this count as none
     """
 
     run: int = 100
@@ -90,6 +91,7 @@ class CoverSearchParams:
     ways: int = 10
     sums: int = 60
     fading: float = 0.9
+    no_multiplier: float = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,6 +101,8 @@ class SeparationParams:
     ``listed`` : partitions; each is priced in every round
     ``grown``, ``added`` : partitions of lowest price whose kept elements are completed in a round, and covers it adds
     ``violated`` : known covers that a round brings back
+    ``room`` : covers of a pool at first; it doubles
+    ``negligible`` : shares of elements and violations of covers up to this count as none
     ``noise`` : relative, on the order in which targets are lost, so that rounds on the same relaxed plan differ
     """
 
@@ -106,4 +110,6 @@ class SeparationParams:
     grown: int = 16
     added: int = 8
     violated: int = 8
+    room: int = 256
+    negligible: float = 1e-6
     noise: float = 0.2

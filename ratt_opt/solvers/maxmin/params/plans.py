@@ -53,6 +53,7 @@ class IncumbentParams:
     ``left_early``, ``early`` : share of what is open of the best plan that an attack on a network has to take off for
         another plan to be looked for at once, and of the time in which that is done
     ``searched`` : searched before an unproved plan is attacked exactly
+    ``block`` : numbers of plans valued at once while climbing: some tens of megabytes
     """
 
     rounds: int = 50
@@ -67,6 +68,7 @@ class IncumbentParams:
     left_early: float = 0.05
     early: float = 0.5
     searched: float = 0.25
+    block: int = 4_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

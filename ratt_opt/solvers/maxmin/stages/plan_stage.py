@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
 
-__all__ = ["LowerEnd", "Moment", "PlanShare", "PlanStage", "run_plan_stages"]
+__all__ = ["LowerEnd", "PlanPhase", "PlanShare", "PlanStage", "run_plan_stages"]
 
 
-class Moment(Enum):
-    """Moment at which a stage runs, beside the stages of the upper end."""
+class PlanPhase(Enum):
+    """PlanPhase at which a stage runs, beside the stages of the upper end."""
 
     BEFORE = "before the upper end"
     BETWEEN = "between its turns"
@@ -69,7 +69,7 @@ class PlanStage(ABC):
     """One row of the schedule. The docstrings of ``run`` and ``applies`` are what the table shows."""
 
     name: ClassVar[str]
-    moment: ClassVar[Moment] = Moment.BEFORE
+    moment: ClassVar[PlanPhase] = PlanPhase.BEFORE
 
     def applies(self, state: LowerEnd) -> bool:
         """Time is left."""
@@ -84,7 +84,7 @@ class PlanStage(ABC):
         """Improve the best plan, or prove more of it; true if the upper end can go on with what was learnt."""
 
 
-def run_plan_stages(stages: Sequence[PlanStage], state: LowerEnd, moment: Moment) -> bool:
+def run_plan_stages(stages: Sequence[PlanStage], state: LowerEnd, moment: PlanPhase) -> bool:
     """Run the stages of a moment that apply; return whether one of them learnt something for the upper end.
 
     Raises

@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.incumbent import PROVED
-from ratt_opt.solvers.maxmin.stages.plan_stage import Moment, PlanStage
+from ratt_opt.solvers.maxmin.stages.plan_stage import PlanPhase, PlanStage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,7 +25,7 @@ class ProofStage(PlanStage):
     """Stage that proves the best plan's value; what it learns instead lets the upper end go on."""
 
     name = "proof"
-    moment = Moment.BETWEEN
+    moment = PlanPhase.BETWEEN
 
     def applies(self, state: LowerEnd) -> bool:
         """The best plan's value is not proved, and time is left."""

@@ -9,7 +9,7 @@ import numpy as np
 from ratt_opt.problem import Attack
 from ratt_opt.solvers.maxmin.incumbent import PROVED, ProvedPlan
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.stages.plan_stage import Moment, PlanShare, PlanStage
+from ratt_opt.solvers.maxmin.stages.plan_stage import PlanPhase, PlanShare, PlanStage
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
@@ -27,7 +27,7 @@ class TiesStage(PlanStage):
     """Stage that breaks ties by the value without attack."""
 
     name = "ties"
-    moment = Moment.AFTER
+    moment = PlanPhase.AFTER
 
     def applies(self, state: LowerEnd) -> bool:
         """The best plan's value is proved, and time is left."""

@@ -19,7 +19,7 @@ from ratt_opt.solvers.maxmin.covers.separation import Ways
 from ratt_opt.solvers.maxmin.elements import PackedElements
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.marginal_search import dive
-from ratt_opt.solvers.maxmin.params import CoverSearchParams
+from ratt_opt.solvers.maxmin.params import CoverSearchParams, SeparationParams
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -134,7 +134,7 @@ def test_the_smallest_tables(robots: int, elements: int, targets: int, groups: i
     for level in (-1.0, 0.5, 10.0):
         ways, pool, sums = (
             Ways(choices, members, inside, of, np.arange(groups)),
-            CoverPool(choices),
+            CoverPool(choices, SeparationParams()),
             CoverSums(elements, CoverSearchParams()),
         )
         separation: Any = SimpleNamespace(
@@ -258,11 +258,11 @@ def test_numbers_that_are_not_there_are_refused():
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_full_pool_has_room_for_partitions_into_more_groups(seed: int, monkeypatch: pytest.MonkeyPatch):
+def test_a_full_pool_has_room_for_partitions_into_more_groups(seed: int):
     """Covers of partitions into one to four groups, in any order, are kept as they were added."""
-    monkeypatch.setattr("ratt_opt.solvers.maxmin.covers.pool.FIRST_ROOM", 2)
     elements, rng, added = 6, np.random.default_rng(seed), dict[int, tuple[Any, list[Any], float]]()
-    pool = CoverPool(CoverChoices(packed_elements(elements, 2), np.arange(elements), np.zeros(elements, np.bool_), 1))
+    choices = CoverChoices(packed_elements(elements, 2), np.arange(elements), np.zeros(elements, np.bool_), 1)
+    pool = CoverPool(choices, SeparationParams(room=2))
     for _ in range(30):
         partition = int(rng.integers(0, 4))
         left_out, level = rng.random(elements) < 0.5, float(rng.random())
