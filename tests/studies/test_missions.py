@@ -8,28 +8,12 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from analysis import consistency
 from ratt_opt.studies import MISSION_METRICS, Case, Seeds, Study, SweepError, mission_study, run
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.studies.cases import Cell
-
-
-def test_the_second_order_term_tells_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sixteen robots pooled at the paper's largest case: the textbook filter is overconfident, the others are not."""
-    monkeypatch.setattr(consistency, "DRAWS", 25)
-    case = next(c for c in consistency.STUDY.cases if (c.n_robots, c.alpha_c) == (30, 108))
-    rows = [
-        {name: str(value) for name, value in consistency.measure(consistency.STUDY, case, Seeds.of(3, k)).items()}
-        | {"case": case.name}
-        for k in range(4)
-    ]
-    first, second, iterated = (consistency.ratios(rows, name)[case.name] for name in consistency.LINEARISATIONS)
-    assert first > 1.2
-    assert 0.9 < second < 1.2
-    assert 0.9 < iterated < 1.15
 
 
 def nearest(problem: ro.Problem, world: ro.PlannerWorld) -> list[int]:
