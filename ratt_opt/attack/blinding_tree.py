@@ -75,6 +75,7 @@ class BlindingTree(AttackNodes[_Node, "tuple[_Node, float, FloatArray]"]):
 
     def run(self) -> Stop:
         """Divide nodes; at the end no value lies between the ends of multiples."""
+        self.task.bracket.is_submodular = True
         super().run()
         if self._spacing > 0:
             self.task.bracket.raise_lower(self.task.bracket.upper)

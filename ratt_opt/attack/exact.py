@@ -150,6 +150,7 @@ def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: 
         evaluations=values.evaluations,
         nodes=own.nodes,
         stages=tuple(records),
+        relies_on=("non-decreasing", *["submodular"] * bracket.is_submodular) if is_metered else (),
     )
 
 

@@ -116,12 +116,14 @@ class AttackResult(ReprMixin):
     nodes: int = 0
     stages: tuple[StageRecord, ...] = field(default=(), compare=False)
     """Stages of an exact attack, in the order in which they ran."""
+    relies_on: tuple[str, ...] = ()
+    """Properties of a set function of your own that ``lower`` takes from its word, such as ``"submodular"``."""
 
     def to_dict(self) -> dict[str, Any]:
         """The result as plain data: unknown numbers are ``None``."""
         ends = {"lower": plain(self.lower), "upper": plain(self.upper)}
         cost = {"evaluations": self.evaluations, "nodes": self.nodes}
-        return {**ends, **self.attack.to_dict(), "stop": self.stop.value, **cost}
+        return {**ends, **self.attack.to_dict(), "stop": self.stop.value, **cost, "relies_on": list(self.relies_on)}
 
     def __repr__(self) -> str:
         attack = f"{counted(len(self.attack.sensing), 'robot')} blinded, {counted(len(self.attack.links), 'link')} cut"
@@ -160,6 +162,8 @@ class AttackBracket:
     """Values that differ by no more are equal: a relative width alone never closes on a worst case of 0."""
     aim: float = -np.inf
     """The search ends at an attack that leaves the team no more."""
+    is_submodular: bool = False
+    """True if the lower end relies on a submodular function."""
 
     @property
     def goal(self) -> float:

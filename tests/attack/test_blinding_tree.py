@@ -9,7 +9,7 @@ import pytest
 
 import ratt_opt as ro
 from tests.oracles import brute_force_worst_case
-from tests.strategies import Submodular
+from tests.strategies import Opaque, Submodular, information_data
 from tests.ways import go
 
 
@@ -97,3 +97,18 @@ def test_functions_that_fall_are_not_bounded_so() -> None:
         found = ro.worst_case_attack(ro.Problem(f, np.arange(6), None, 3, 0), np.arange(6))
         least = min(f([e for e in range(6) if e not in gone]) for k in range(4) for gone in combinations(range(6), k))
         assert found.lower <= least + 1e-12
+
+
+def test_attacks_say_what_they_rely_on() -> None:
+    """On a submodular function only if a bound of submodular ones raised the lower end; on no word of a criterion."""
+    rng = np.random.default_rng(2)
+    f = ro.FacilityLocation(rng.random((30, 12)))
+    own, values = (ro.Problem(g, np.arange(30), None, 10, 0) for g in (f, Opaque(f)))
+    plan = np.arange(30)
+    assert ro.worst_case_attack(own, plan, time_limit=0.2).relies_on == ("non-decreasing", "submodular")
+    found = ro.worst_case_attack(values, plan, max_evaluations=500)
+    assert found.relies_on == ("non-decreasing",)
+    assert found.to_dict()["relies_on"] == ["non-decreasing"]
+    prior, information = information_data(rng, 4, 2)
+    measured = ro.Problem(ro.TraceObjective(prior, information), np.arange(4), None, 1, 0)
+    assert ro.worst_case_attack(measured, np.arange(4)).relies_on == ()

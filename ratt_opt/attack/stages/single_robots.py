@@ -67,6 +67,7 @@ def bound_by_values(task: AttackTask) -> None:
         least = nothing + float(np.sort(np.maximum(top, 0.0))[:size].sum())
         if least > task.bracket.upper + f.least_improvement(least, terms=values.n):
             _refuse(task)
+        task.bracket.is_submodular |= least > task.bracket.lower
         task.bracket.raise_lower(least)
 
 
