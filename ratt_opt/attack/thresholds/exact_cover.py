@@ -23,7 +23,7 @@ STEPS = 2_000_000
 WORD = 64
 
 
-class Cover(IntEnum):
+class CoverVerdict(IntEnum):
     """Answer to the search for a cover."""
 
     PAUSED = -1
@@ -85,13 +85,13 @@ class ExactCover:
         OutOfBudget : nodes or seconds are spent, or the user interrupted; the search goes on where it was.
         """
         record, left = self._record, steps
-        answer: int = Cover.PAUSED
-        while answer == Cover.PAUSED and left > 0:
+        answer: int = CoverVerdict.PAUSED
+        while answer == CoverVerdict.PAUSED and left > 0:
             before = record.nodes
             record.most_nodes = before + budget.nodes_left(STEPS)
             answer = loops.next_cover(record, min(STEPS, left))
             left -= STEPS
             budget.nodes += record.nodes - before
-        if answer == Cover.FOUND:
+        if answer == CoverVerdict.FOUND:
             return [int(k) for k in self._levels["column"][: record.depth + 1]]
-        return False if answer == Cover.NONE else None
+        return False if answer == CoverVerdict.NONE else None
