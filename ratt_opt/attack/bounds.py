@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = [
+    "ROUNDING",
     "bound_by_trees",
     "first_bound",
     "forced_group_bound",

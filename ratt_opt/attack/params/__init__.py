@@ -80,8 +80,8 @@ __all__ = [
 ]
 
 AT_LEAST_ONE = (
-    "criterion.starts_for", "branching.at_once", "all_sets.block", "annealing.longer", "annealing.again",
-    "bounds.largest_weight", "axis.intervals", "axis.bisections", "family_exchanges.stride",
+    "criterion.starts_for", "branching.at_once", "protection.at_once", "all_sets.block", "annealing.longer",
+    "annealing.again", "bounds.largest_weight", "axis.intervals", "axis.bisections", "family_exchanges.stride",
     "size_vectors.of_each_size", "size_vectors.some_vectors",
 )  # fmt: skip
 """Parameters without which an attack would not go on, or not end."""

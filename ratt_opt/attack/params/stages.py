@@ -108,6 +108,7 @@ class ProtectionParams:
     ``base`` : for the plan's own worst attack, which decides the gains to search for. ``bisection`` : for each attack
     ``links`` : for each exact attack on a choice of links; one needed again while open gets all of it
     ``ranked`` : attacks, from the worst, by which candidates are ranked: more cost time at every node
+    ``at_once`` : pairs of groups that are valued between two looks at the clock
     """
 
     survey: float = 0.9
@@ -115,3 +116,4 @@ class ProtectionParams:
     bisection: float = 0.1
     links: float = 0.2
     ranked: int = 40
+    at_once: int = 64

@@ -10,6 +10,7 @@ import numpy as np
 
 from ratt_opt._validation import check_number
 from ratt_opt.attack import params as parameters
+from ratt_opt.attack.bounds import ROUNDING
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.attack.heuristics import PartialAttack, team_values
 from ratt_opt.attack.task import PlanValues
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
 
 __all__ = ["BreakingBudget", "Criticality", "breaking_budgets", "criticality_ranking"]
-
-CERTAIN = 1e-12
-"""Gains below this share of the value are rounding, not gains."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +82,7 @@ def criticality_ranking(
     targets: list[int | Link] = [*range(problem.n_robots), *ranked_links]
     used = [t for t in targets if t in (base.attack.sensing if isinstance(t, int) else base.attack.links)]
     whole = max(values(group) for group in problem.communication.groups())
-    noise = 2 * problem.objective.rounding + CERTAIN * abs(base.upper)
+    noise = 2 * problem.objective.rounding + ROUNDING * abs(base.upper)  # smaller gains are none
     losses, rows = _losses(problem, values, targets), []
     after = {}
     for done, target in enumerate(used):

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack import params as parameters
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -27,9 +29,6 @@ if TYPE_CHECKING:
 __all__ = ["KnownAttack", "KnownAttacks"]
 
 Groups = list[frozenset[int]]
-
-AT_ONCE = 64
-"""Pairs of groups that are valued between two looks at the clock."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -128,10 +127,11 @@ class KnownAttacks:
         """Find the pair of groups with most links between among those worth at most ``goal`` together."""
         first, second = np.nonzero(np.triu(counts))
         order = np.argsort(-counts[first, second], kind="stable")
-        for start in range(0, len(order), AT_ONCE):
+        at_once = parameters.DEFAULT.protection.at_once
+        for start in range(0, len(order), at_once):
             if self._budget.is_over:
                 return None
-            some = order[start : start + AT_ONCE]
+            some = order[start : start + at_once]
             pairs = list(zip(first[some].tolist(), second[some].tolist(), strict=True))
             worths = self._worths([groups[a] | groups[b] for a, b in pairs], blinded)
             for pair, worth in zip(pairs, worths, strict=True):
