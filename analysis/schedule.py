@@ -39,10 +39,10 @@ def bounds() -> None:
 
 def plans() -> None:
     """Print the table of the stages that find the best plan and prove its value."""
-    print("| stage | what it does | applies when | moment |")
+    print("| stage | what it does | applies when | phase |")
     print("| --- | --- | --- | --- |")
     for stage in PLAN_STAGES:
-        row = [stage.name, _sentence(stage.run), _sentence(stage.applies), stage.moment.value]
+        row = [stage.name, _sentence(stage.run), _sentence(stage.applies), stage.phase.value]
         print("| " + " | ".join(row) + " |")
 
 

@@ -18,7 +18,7 @@ from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.params import DivisionParams, LevelParams
 from ratt_opt.solvers.maxmin.restarts import RestartedSearch
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
-from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES
+from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES, PLAN_STAGES
 from ratt_opt.solvers.maxmin.winners import GroupProofs
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ BOUNDS: dict[str, Patches] = {
 }
 """Patches that switch off one part of the attack each."""
 PLAN_SWITCHES: dict[str, Patches] = {
-    **{stage.name: () for stage in BOUND_STAGES if stage.name not in NEEDED},
+    **{stage.name: () for stage in (*BOUND_STAGES, *PLAN_STAGES) if stage.name not in NEEDED},
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),

@@ -41,9 +41,9 @@ def started(problem: Problem, plan: np.ndarray, **shares: float) -> Incumbent:
     return Incumbent(problem, OutcomePool(problem), plan, Budget(time_limit=3600.0), params)
 
 
-def run(search: Incumbent, moment: PlanPhase, plans: Sequence[np.ndarray] = ()) -> bool:
-    """Run the stages of a moment."""
-    return run_plan_stages(PLAN_STAGES, LowerEnd(incumbent=search, plans=plans), moment)
+def run(search: Incumbent, phase: PlanPhase, plans: Sequence[np.ndarray] = ()) -> bool:
+    """Run the stages of a phase."""
+    return run_plan_stages(PLAN_STAGES, LowerEnd(incumbent=search, plans=plans), phase)
 
 
 @pytest.mark.parametrize(("robots", "blinded", "cut"), [(40, 13, 195), (40, 1, 600), (60, 19, 442)])

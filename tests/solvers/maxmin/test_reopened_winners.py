@@ -33,7 +33,7 @@ def two_triangles(rng: np.random.Generator, kind: str) -> Problem:
     return Problem(objective, np.repeat(np.arange(6), 3), graph, alpha_s, alpha_c)
 
 
-@pytest.mark.parametrize("seed", [0, 17, 29, 32, 39, 41, 48, 56])
+@pytest.mark.parametrize("seed", [17, 29, 32, 35, 39, 41, 48, 65])
 def test_the_upper_end_still_comes_down(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     hopeful, reopened = True, 0
     level, applies, prove = Candidates.level.fget, ProofStage.applies, ProofStage.run

@@ -1,4 +1,4 @@
-"""Stages of the search for the best plan's lower end: objects with a name, a moment, a condition, and a share."""
+"""Stages of the search for the best plan's lower end: objects with a name, a phase, a condition, and a share."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class PlanStage(ABC):
     """One row of the schedule. The docstrings of ``run`` and ``applies`` are what the table shows."""
 
     name: ClassVar[str]
-    moment: ClassVar[PlanPhase] = PlanPhase.BEFORE
+    phase: ClassVar[PlanPhase] = PlanPhase.BEFORE
 
     def applies(self, state: LowerEnd) -> bool:
         """Time is left."""
@@ -84,8 +84,8 @@ class PlanStage(ABC):
         """Improve the best plan, or prove more of it; true if the upper end can go on with what was learnt."""
 
 
-def run_plan_stages(stages: Sequence[PlanStage], state: LowerEnd, moment: PlanPhase) -> bool:
-    """Run the stages of a moment that apply; return whether one of them learnt something for the upper end.
+def run_plan_stages(stages: Sequence[PlanStage], state: LowerEnd, phase: PlanPhase) -> bool:
+    """Run the stages of a phase that apply; return whether one of them learnt something for the upper end.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def run_plan_stages(stages: Sequence[PlanStage], state: LowerEnd, moment: PlanPh
     """
     learnt = False
     for stage in stages:
-        if stage.moment is moment and stage.name not in LEFT_OUT and stage.applies(state):
+        if stage.phase is phase and stage.name not in LEFT_OUT and stage.applies(state):
             share, budget = stage.share(state.incumbent), state.incumbent.budget
             part = budget.part(share.part, max_nodes=share.max_nodes, at_least=share.at_least)
             learnt = bool(stage.run(state, part)) or learnt

@@ -25,7 +25,7 @@ class ProofStage(PlanStage):
     """Stage that proves the best plan's value; what it learns instead lets the upper end go on."""
 
     name = "proof"
-    moment = PlanPhase.BETWEEN
+    phase = PlanPhase.BETWEEN
 
     def applies(self, state: LowerEnd) -> bool:
         """The best plan's value is not proved, and time is left."""

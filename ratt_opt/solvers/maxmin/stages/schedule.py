@@ -35,4 +35,4 @@ PLAN_STAGES: tuple[PlanStage, ...] = (
     ProofStage(),
     TiesStage(),
 )
-"""Stages of the lower end, in order; each says at which moment it runs."""
+"""Stages of the lower end, in order; each says in which phase it runs."""

@@ -27,7 +27,7 @@ class TiesStage(PlanStage):
     """Stage that breaks ties by the value without attack."""
 
     name = "ties"
-    moment = PlanPhase.AFTER
+    phase = PlanPhase.AFTER
 
     def applies(self, state: LowerEnd) -> bool:
         """The best plan's value is proved, and time is left."""
