@@ -7,7 +7,6 @@ size.
 from __future__ import annotations
 
 from itertools import combinations
-from math import comb
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["MOST_ATTACKS", "attacks_are_few", "count_attacks", "partitions_by_few_cuts"]
+__all__ = ["MOST_ATTACKS", "attacks_are_few", "partitions_by_few_cuts"]
 
 MOST_ATTACKS = 20_000
 """Sets of links times sets of robots that are tried one by one: a second or two of the processor at 120 robots."""
@@ -25,14 +24,7 @@ MOST_ATTACKS = 20_000
 
 def attacks_are_few(threat: Threat) -> bool:
     """Test whether all attacks that use the whole budgets are few enough to enumerate."""
-    return count_attacks(threat) <= MOST_ATTACKS
-
-
-def count_attacks(threat: Threat) -> int:
-    """Count sets of links times sets of robots that use the whole budgets."""
-    cuts = comb(len(threat.graph.links) - len(threat.protected_links), threat.n_cut)
-    blinded = comb(threat.graph.n_robots - len(threat.protected_robots), threat.n_blinded)
-    return cuts * blinded
+    return threat.n_attacks <= MOST_ATTACKS
 
 
 def partitions_by_few_cuts(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_distinct, check_integer, check_link
@@ -52,6 +53,12 @@ class Threat:
     def n_cut(self) -> int:
         """Links a worst attack cuts: the budget, as far as unprotected links last."""
         return min(self.alpha_c, len(self.graph.links) - len(self.protected_links))
+
+    @property
+    def n_attacks(self) -> int:
+        """Sets of links times sets of robots that use the whole budgets."""
+        cuts = comb(len(self.graph.links) - len(self.protected_links), self.n_cut)
+        return cuts * comb(self.graph.n_robots - len(self.protected_robots), self.n_blinded)
 
     @property
     def links_alike(self) -> bool:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from ratt_opt.attack.enumeration import enumerate_by_values
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
-from ratt_opt.graph.few_cuts import count_attacks
 
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
@@ -25,7 +24,7 @@ class EveryAttackStage(Stage[AttackState]):
         """Links not all alike; at most 20,000 attacks, or 200,000 beyond 24 robots, not brief."""
         few, params = attack.has_table or attack.is_brief, attack.task.params.stages
         most = params.attacks if few else params.attacks_beyond
-        return not attack.threat.links_alike and count_attacks(attack.threat) <= most
+        return not attack.threat.links_alike and attack.threat.n_attacks <= most
 
     def share(self, params: AttackParams) -> Share:
         """Return a part that leaves time for other stages."""
@@ -47,7 +46,7 @@ class EveryValuedAttackStage(EveryAttackStage):
             blinded = sum(comb(free, k) for k in range(threat.n_blinded + 1))
             return bool(blinded <= min(params.stages.attacks, 2 ** (n_robots - 1)))
         is_large = n_robots > params.all_sets.valued and not threat.links_alike
-        return is_large and count_attacks(threat) <= params.stages.attacks
+        return is_large and threat.n_attacks <= params.stages.attacks
 
     def share(self, params: AttackParams) -> Share:  # noqa: ARG002
         """Return the whole budget."""
