@@ -53,8 +53,9 @@ BOUNDS: dict[str, Patches] = {
     "search of sets in depth": _attacked(set_search=SetSearchParams(whole=((10**9, 0),), fewest=1, most=1)),
 }
 """Patches that switch off one part of the attack each."""
+PLAN_STAGE_NAMES = [*(stage.name for stage in BOUND_STAGES), *(stage.name for stage in PLAN_STAGES)]
 PLAN_SWITCHES: dict[str, Patches] = {
-    **{stage.name: () for stage in (*BOUND_STAGES, *PLAN_STAGES) if stage.name not in NEEDED},
+    **{name: () for name in PLAN_STAGE_NAMES if name not in NEEDED},
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
