@@ -16,17 +16,17 @@ class MissionParams:
     ``linearisations`` : of an iterated update; with the paper's settings the estimate no longer moves visibly after 3
     ``on_top`` : distance [m] below which a measurement has no derivative: it is linearised at the point it names
     ``sequences`` : control sequences of one robot, at most; twelve controls make 1,728 in three steps, whose
-        matrices still fit in memory
+    matrices still fit in memory
     ``noise_floor`` : noise a step for joint states whose steps determine each other (no process noise), as a share of
-        the covariance: it makes their prior invertible, and moves values by that share
+    the covariance: it makes their prior invertible, and moves values by that share
     ``on_time`` : share of the sampling period within which two times count as one
     ``most_periods`` : between two steps of a tracker, at most; each is predicted on its own, and after that many
-        nothing is known of a target
+    nothing is known of a target
     ``pose_rounding`` : asymmetry and most negative eigenvalue that a pose's covariance may have, relative to its
-        largest entry
+    largest entry
     ``search_share`` : of the time left of a step, for a search within a limit: it looks at the clock between nodes only
     ``fallback_nodes`` : of each worst case by which known plans are compared if the planner fails; a thousand take some
-        milliseconds
+    milliseconds
     """
 
     linearisations: int = 4

@@ -42,16 +42,16 @@ class VerifierLimits:
 
     ``bits`` : of exact numbers held at once (1 GiB)
     ``file`` : size of a file [bytes]; ``entries`` : of all its lists together; ``cells`` : scores of points, directions
-        of tangents, robots in attacks; ``depth`` : of a tree. Together they bound the memory of a check
+    of tangents, robots in attacks; ``depth`` : of a tree. Together they bound the memory of a check
     ``robots`` : of a team; ``sized_robots`` : of a team whose proof counts sizes of groups: a characteristic polynomial
-        of 200 rows takes less than a second, one of 1,000 minutes
+    of 200 rows takes less than a second, one of 1,000 minutes
     ``terms`` : scores that all linear rows add up (seconds); ``scores`` : of rows, in memory at once (half a gigabyte)
     ``listed`` : groups that a cover lists; ``cut_groups`` : those of a certificate of cuts
     ``states`` : of a table of an elimination
     ``cut_numbers``, ``dual_numbers``, ``size_numbers`` : integers that a file states of a network, of duals and flows,
-        and of sizes: larger ones take longer to add and to multiply
+    and of sizes: larger ones take longer to add and to multiply
     ``precisions`` : of balls [bits], in turn; a comparison undecided at the last is not proved. The first decides
-        nearly all of them
+    nearly all of them
     ``block`` : points scored, or targets below one logarithm, between two looks at the clock: fewer stop sooner
     ``told`` : cases of a proof between two words about it; a tenth of a second or so if each is long
     ``matrix`` : cost of one operation on a matrix
