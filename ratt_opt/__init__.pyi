@@ -26,7 +26,7 @@ from .scenario.files import (
     scenario_schema as scenario_schema,
 )
 from .scenario.limited_view import limited_view_scenario as limited_view_scenario
-from .scenario.networks import network_scenario as network_scenario
+from .scenario.networks import NetworkShape as NetworkShape, network_scenario as network_scenario
 from .scenario.on_graph import graph_scenario as graph_scenario
 from .scenario.plan_file import load_plan as load_plan
 from .scenario.mrclam import from_mrclam as from_mrclam
@@ -234,6 +234,7 @@ from .graph.outcomes import (
 
 # == The audit of the paper's proof
 from .audit import run_audit as run_audit, Ledger as Ledger
+from .worst_ratio.params import WorstRatioParams as WorstRatioParams
 from .worst_ratio.ratio import worst_case_ratio as worst_case_ratio, WorstCaseRatio as WorstCaseRatio
 from .worst_ratio.witness import RatioWitness as RatioWitness
 

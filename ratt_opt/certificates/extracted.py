@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 from dataclasses import dataclass
+from enum import IntEnum
 from pathlib import Path
 
 from ratt_opt.errors import FileFormatError, InputError, ProofError, UndecidedError
@@ -13,8 +14,15 @@ from ratt_opt.errors import FileFormatError, InputError, ProofError, UndecidedEr
 __all__ = ["ExtractedVerdict", "check_extracted", "find_checker"]
 
 NAME, VARIABLE = "ratt-check", "RATT_CHECK"
-PROVED, REFUSED, UNREADABLE, UPPER_ONLY = 0, 1, 2, 3
-"""Exit codes of the program."""
+
+
+class CheckerCode(IntEnum):
+    """Exit codes of the program."""
+
+    PROVED = 0
+    REFUSED = 1
+    UNREADABLE = 2
+    UPPER_ONLY = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,11 +75,11 @@ def check_extracted(
     except OSError as error:
         raise InputError(NAME, "must be a program that runs", f"{found}: {error.strerror}") from None
     code, _, line = done.stdout.partition(" ")
-    if code != str(done.returncode) or done.returncode not in (PROVED, REFUSED, UNREADABLE, UPPER_ONLY):
+    if code != str(done.returncode) or done.returncode not in set(CheckerCode):
         raise InputError(NAME, "must answer as it is written to", f"{found}: {done.stdout or done.stderr}")
     text = line.removeprefix(f"{command[1]}: ").strip()
-    if done.returncode == REFUSED:
+    if done.returncode == CheckerCode.REFUSED:
         raise ProofError(f"{NAME}: {text}")
-    if done.returncode == UNREADABLE:
+    if done.returncode == CheckerCode.UNREADABLE:
         raise FileFormatError(str(path), f"must be a certificate that {NAME} reads", text)
-    return ExtractedVerdict(program=found, lower_proved=done.returncode == PROVED, text=text)
+    return ExtractedVerdict(program=found, lower_proved=done.returncode == CheckerCode.PROVED, text=text)

@@ -23,9 +23,9 @@ def main() -> None:
             code = _end_interrupted()
         except KeyboardInterrupt:  # a second one, before interrupts were ignored
             code = _end_interrupted()
-    from ratt_opt.cli.exit_codes import INTERRUPTED
+    from ratt_opt.cli.exit_codes import ExitCode
 
-    if code == INTERRUPTED:
+    if code == ExitCode.INTERRUPTED:
         # A half-done import may complain on the way out.
         from ratt_opt.cli.terminal import abandon_output
 
@@ -49,10 +49,10 @@ def _end_interrupted() -> int:
     from ratt_opt.cli.interrupts import ignore_interrupts
 
     ignore_interrupts()
-    from ratt_opt.cli.exit_codes import INTERRUPTED
+    from ratt_opt.cli.exit_codes import ExitCode
     from ratt_opt.cli.terminal import fail
 
-    return fail("interrupted", INTERRUPTED)
+    return fail("interrupted", ExitCode.INTERRUPTED)
 
 
 def _hold_streams() -> None:
@@ -76,7 +76,7 @@ def _draw_into_files() -> None:
 
 def run(arguments: list[str]) -> int:
     """Run one command line and return its exit code; every error is one line on standard error."""
-    from ratt_opt.cli.exit_codes import FAULT, INTERRUPTED
+    from ratt_opt.cli.exit_codes import ExitCode
     from ratt_opt.cli.interrupts import Interrupts
 
     fault: Exception | None = None
@@ -94,4 +94,8 @@ def run(arguments: list[str]) -> int:
         from ratt_opt.cli.faults import keep_traceback
         from ratt_opt.cli.terminal import fail
 
-        return fail("interrupted", INTERRUPTED) if fault is None else fail(keep_traceback(fault, arguments), FAULT)
+        return (
+            fail("interrupted", ExitCode.INTERRUPTED)
+            if fault is None
+            else fail(keep_traceback(fault, arguments), ExitCode.FAULT)
+        )

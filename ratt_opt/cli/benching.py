@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ratt_opt.cli.exit_codes import REFUTED
+from ratt_opt.cli.exit_codes import ExitCode
 from ratt_opt.cli.options import JsonFlag, OutFolder
 from ratt_opt.cli.terminal import WorkInterrupted, fail, print_json, print_lines, written
 from ratt_opt.errors import ProofError, UndecidedError
@@ -68,7 +68,7 @@ def run(
                 accept_old_rows=accept_old_rows,
             )
     except SweepError as error:
-        return fail(str(error), REFUTED)
+        return fail(str(error), ExitCode.REFUTED)
     except KeyboardInterrupt:
         raise WorkInterrupted("interrupted; finished rows are kept, run the same command to resume") from None
     (found,) = summaries({name or solver: rows})

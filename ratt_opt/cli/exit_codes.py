@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-__all__ = ["BAD_INPUT", "FAULT", "INTERRUPTED", "NO_OUTPUT", "REFUTED", "UNDECIDED", "UPPER_ONLY"]
+from enum import IntEnum
 
-REFUTED = 1
-BAD_INPUT = 2
-UPPER_ONLY = 3
-UNDECIDED = 4
-FAULT = 70
-NO_OUTPUT = 74
-INTERRUPTED = 130
+__all__ = ["ExitCode"]
+
+
+class ExitCode(IntEnum):
+    """Exit codes as programs rely on them; the last three are those of ``sysexits.h`` and of shells."""
+
+    REFUTED = 1
+    BAD_INPUT = 2
+    UPPER_ONLY = 3
+    UNDECIDED = 4
+    FAULT = 70
+    NO_OUTPUT = 74
+    INTERRUPTED = 130

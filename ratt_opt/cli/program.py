@@ -17,7 +17,7 @@ from ratt_opt.cli import benching
 from ratt_opt.cli.attacking import attack
 from ratt_opt.cli.cutting import cuts
 from ratt_opt.cli.decentralising import decentralise
-from ratt_opt.cli.exit_codes import BAD_INPUT, INTERRUPTED, NO_OUTPUT, REFUTED, UNDECIDED
+from ratt_opt.cli.exit_codes import ExitCode
 from ratt_opt.cli.planning import bound, demo
 from ratt_opt.cli.proofs import audit, verify
 from ratt_opt.cli.replaying import replay
@@ -29,11 +29,11 @@ from ratt_opt.errors import InputError, ProofError, UndecidedError
 __all__ = ["app", "run_program"]
 
 ERRORS = {
-    InputError: BAD_INPUT,
-    UndecidedError: UNDECIDED,
-    ProofError: REFUTED,
-    OutputError: NO_OUTPUT,
-    WorkInterrupted: INTERRUPTED,
+    InputError: ExitCode.BAD_INPUT,
+    UndecidedError: ExitCode.UNDECIDED,
+    ProofError: ExitCode.REFUTED,
+    OutputError: ExitCode.NO_OUTPUT,
+    WorkInterrupted: ExitCode.INTERRUPTED,
 }
 """Exit codes of the errors that users can act on; the first kind that fits counts."""
 
@@ -107,7 +107,7 @@ def run_program(arguments: list[str]) -> int:
     """
     encode_anything()
     if word := next((word for word in arguments if "\0" in word), None):  # no path can; the system's words never do
-        return fail(f"a word must not hold a null character; got {word}", BAD_INPUT)
+        return fail(f"a word must not hold a null character; got {word}", ExitCode.BAD_INPUT)
     try:
         code = app(_with_current_names(arguments), prog_name="ratt-opt", standalone_mode=False)
         flush()
@@ -115,9 +115,9 @@ def run_program(arguments: list[str]) -> int:
         raise KeyboardInterrupt from None
     except (*ERRORS, _UsageError) as error:
         if isinstance(error, _UsageError):
-            return fail(_usage_text(error, arguments), BAD_INPUT)
+            return fail(_usage_text(error, arguments), ExitCode.BAD_INPUT)
         return fail(str(error), next(code for kind, code in ERRORS.items() if isinstance(error, kind)))
-    if code == INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
+    if code == ExitCode.INTERRUPTED:  # what Typer makes of an interrupt; no command returns it
         raise KeyboardInterrupt
     return code if isinstance(code, int) else 0
 

@@ -8,7 +8,7 @@ import typer
 
 from ratt_opt.certificates.verifier.limits import DEFAULT as LIMITS
 from ratt_opt.certificates.verifier.limits import SECONDS
-from ratt_opt.cli.exit_codes import UPPER_ONLY
+from ratt_opt.cli.exit_codes import ExitCode
 from ratt_opt.cli.options import JsonFlag, LatexFlag, Objective, OutFolder, check_output
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, print_tables, written
 from ratt_opt.errors import InputError
@@ -100,7 +100,7 @@ def verify(
         about_given = [] if given is None else [_about(given.digest, found.made_from)]
         checked_lines = [] if second is None else [f"ratt-check, whose proof is checked: {second.text}"]
         print_lines([*found.lines(), *about_given, *checked_lines, *story])
-    return 0 if found.lower_proved and (second is None or second.lower_proved) else UPPER_ONLY
+    return 0 if found.lower_proved and (second is None or second.lower_proved) else ExitCode.UPPER_ONLY
 
 
 def _about(given: str, made_from: str | None) -> str:

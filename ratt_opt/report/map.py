@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ratt_opt.report.ellipses import ellipse_of
 from ratt_opt.report.fields import draw_fields, draw_watching
 from ratt_opt.report.labels import Label, halo, place_labels
 from ratt_opt.report.palette import BLINDED, CUT, INK, LOST, SURVIVING, TARGET
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["MANY_ROBOTS", "draw_map", "label_places", "name_things"]
 
-SIGMAS = 2.4477
-"""Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
 MANY_LINKS = 60
 """Number of links of a kind above which they are drawn fainter."""
 MANY_ROBOTS = 20
@@ -107,10 +106,12 @@ def _draw_targets(axes: Axes, picture: Picture) -> None:
             before: dict[str, Any] = {"fill": False, "linestyle": ":"}
             after: dict[str, Any] = {"alpha": 0.3}
             for covariance, style in ((prior, before), (posterior, after)):
-                variances, axes_of = np.linalg.eigh(covariance)
-                width, height = 2 * SIGMAS * np.sqrt(variances)
-                angle = float(np.degrees(np.arctan2(axes_of[1, 0], axes_of[0, 0])))
-                axes.add_patch(Ellipse(mean, width, height, angle=angle, color=TARGET, linewidth=1.0, **style))
+                long, short, angle = ellipse_of(covariance)
+                axes.add_patch(
+                    Ellipse(
+                        mean, 2 * long, 2 * short, angle=float(np.degrees(angle)), color=TARGET, linewidth=1.0, **style
+                    )
+                )
         axes.plot([], [], color=TARGET, linestyle=":", label="95 % before measuring")
         axes.scatter([], [], marker="o", s=90, color=TARGET, alpha=0.3, label="95 % after, best group")
     label = "target (predicted), T: its number" + (", ×: its weight" if picture.is_weighted else "")

@@ -15,12 +15,7 @@ from ratt_opt.scenario.sensor import Sensor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["TARGET_SPEEDS", "TARGET_TURN_RATES", "random_scenario"]
-
-TARGET_SPEEDS = (5 / 3, -5 / 3, 5 / 2, -5 / 2, 5.0, -5.0)
-"""[m/s]. Source: ratt.tex, Section VI, common parameters."""
-TARGET_TURN_RATES = (1 / 10, 1 / 20, 1 / 30)
-"""[rad/s]. Source: ratt.tex, Section VI, common parameters."""
+__all__ = ["random_scenario"]
 
 
 def random_scenario(
@@ -36,6 +31,8 @@ def random_scenario(
     sensor: Sensor | None = None,
     controls: Sequence[tuple[float, float]] = DEFAULT_CONTROLS,
     communication_range: float | None = None,
+    target_speeds: Sequence[float] = (5 / 3, -5 / 3, 5 / 2, -5 / 2, 5.0, -5.0),
+    target_turn_rates: Sequence[float] = (1 / 10, 1 / 20, 1 / 30),
 ) -> Scenario:
     """Draw robots and targets uniformly in a square, headings zero, as the paper's trials do.
 
@@ -52,6 +49,7 @@ def random_scenario(
     sensor : noise and reach; the default sensor if ``None``
     controls : (speed [m/s], turn rate [rad/s]) pairs of every robot
     communication_range : robots within this distance are linked [m]; all are if ``None``
+    target_speeds, target_turn_rates : [m/s] and [rad/s], of which each target has one; the paper's by default
 
     Raises
     ------
@@ -66,16 +64,19 @@ def random_scenario(
     if 4 * n_robots * len(controls) * n_targets > MOST_ENTRIES:
         rule = f"must have at most {MOST_ENTRIES} entries in all information matrices with {n_robots} robots"
         raise InputError("n_targets", rule, n_targets)
+    if not (len(target_speeds) and len(target_turn_rates)):
+        raise InputError("target_speeds", "and target_turn_rates must hold a number each", "none")
     for name, value in (("side", side), ("prior_std", prior_std)):
         if not value > 0:
             raise InputError(name, "must be positive", value)
     robots_seed, targets_seed = np.random.SeedSequence(check_integer("seed", seed, low=0)).spawn(2)
     robots, targets = np.random.default_rng(robots_seed), np.random.default_rng(targets_seed)
+    stds, motions = (prior_std, process_std), (target_speeds, target_turn_rates)
     return Scenario(
         robots=tuple(
             Robot(x=_place(robots, side), y=_place(robots, side), controls=tuple(controls)) for _ in range(n_robots)
         ),
-        targets=tuple(_target(targets, side, prior_std, process_std) for _ in range(n_targets)),
+        targets=tuple(_target(targets, side, stds, motions) for _ in range(n_targets)),
         sensor=sensor or Sensor(),
         alpha_s=alpha_s,
         alpha_c=alpha_c,
@@ -87,13 +88,16 @@ def _place(rng: np.random.Generator, side: float) -> float:
     return side * float(rng.random())
 
 
-def _target(rng: np.random.Generator, side: float, prior_std: float, process_std: float) -> Target:
+def _target(
+    rng: np.random.Generator, side: float, stds: tuple[float, float], motions: tuple[Sequence[float], Sequence[float]]
+) -> Target:
+    (prior_std, process_std), (speeds, turn_rates) = stds, motions
     variance = prior_std**2
     return Target(
         x=_place(rng, side),
         y=_place(rng, side),
         covariance=((variance, 0.0), (0.0, variance)),
-        speed=TARGET_SPEEDS[int(rng.random() * len(TARGET_SPEEDS))],
-        turn_rate=TARGET_TURN_RATES[int(rng.random() * len(TARGET_TURN_RATES))],
+        speed=speeds[int(rng.random() * len(speeds))],
+        turn_rate=turn_rates[int(rng.random() * len(turn_rates))],
         process_std=process_std,
     )

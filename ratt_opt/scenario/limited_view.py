@@ -18,22 +18,13 @@ from ratt_opt.scenario.sensor import Sensor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["DRIVING_SPEEDS", "SENSORS", "demo_scenario", "limited_view_scenario"]
+__all__ = ["SENSORS", "demo_scenario", "limited_view_scenario"]
 
 SENSORS = {
     "camera": Sensor(law="std", range_noise=0.3, range_noise_slope=0.02, bearing_noise=0.01, bearing_noise_slope=0.0),
     "radar": Sensor(law="std", range_noise=0.2, range_noise_slope=0.0, bearing_noise=0.03, bearing_noise_slope=0.0),
 }
 """A stereo camera (0.6 degrees; depth to 2 % and 0.3 m) and a small radar (0.2 m; 1.7 degrees)."""
-
-DRIVING_SPEEDS = (0.0, 2.0)
-"""[m/s]: a robot stands or drives, and turns to one of its headings."""
-
-TARGET_SPEED = 0.5
-"""Targets move at up to this speed [m/s]: much slower than robots drive, so that views matter more than ways."""
-
-SIDE, CROWD = 60.0, 10
-"""Side of the square [m] of up to this many robots; more robots have as much area each."""
 
 
 def limited_view_scenario(
@@ -50,12 +41,16 @@ def limited_view_scenario(
     sensor: str | Sensor = "camera",
     prior_std: float = 3.0,
     process_std: float = 0.5,
+    speeds: Sequence[float] = (0.0, 2.0),
+    target_speed: float = 0.5,
+    side: float = 60.0,
+    crowd: int = 10,
 ) -> Scenario:
     """Draw a team with limited views: each robot must choose what to look at.
 
-    A control is a speed, 0 or 2 m/s, and one of ``headings`` equal turns of the full circle; the robot drives along
-    its old heading and looks along the new one. Robots and slow targets stand uniformly in a square: 60 m for up to 10
-    robots, then growing so that each robot has as much area. They come from two child streams of
+    A control is a speed and one of ``headings`` equal turns of the full circle; the robot drives along
+    its old heading and looks along the new one. Robots and slow targets stand uniformly in a square, which
+    grows with large teams so that each robot has as much area. They come from two child streams of
     ``SeedSequence(seed)``, one number after the other.
 
     Parameters
@@ -69,6 +64,9 @@ def limited_view_scenario(
     communication_range : robots within this distance are linked [m]; all are if ``None``
     sensor : ``"camera"`` (precise bearing), ``"radar"`` (precise range), or a :class:`Sensor` whose noise is taken
     prior_std, process_std : standard deviation per axis of each target's estimate and motion noise [m]
+    speeds : of a robot's controls [m/s]: it stands or drives by default
+    target_speed : up to which targets move [m/s]; much slower than robots, so that views matter more than ways
+    side : of the square [m] for up to ``crowd`` robots; more robots have as much area each
 
     Raises
     ------
@@ -77,17 +75,23 @@ def limited_view_scenario(
     n_robots = check_integer("n_robots", n_robots, low=1, high=MOST_ROBOTS)
     n_targets = check_integer("n_targets", n_targets, low=1)
     headings = check_integer("headings", headings, low=1)
-    if 4 * n_robots * len(DRIVING_SPEEDS) * headings * n_targets > MOST_ENTRIES:
+    crowd = check_integer("crowd", crowd, low=1)
+    for name, value in (("target_speed", target_speed), ("side", side)):
+        if not (_is_number(value) and 0 < value < math.inf):
+            raise InputError(name, "must be a finite number > 0", value)
+    if not len(speeds):
+        raise InputError("speeds", "must hold a speed", speeds)
+    if 4 * n_robots * len(speeds) * headings * n_targets > MOST_ENTRIES:
         rule = f"must have at most {MOST_ENTRIES} entries in all information matrices with {n_robots} robots"
         raise InputError("n_targets", rule, n_targets)
     limited = _limited(sensor, _checked_view(view), reach)
     robots_seed, targets_seed = np.random.SeedSequence(check_integer("seed", seed, low=0)).spawn(2)
     robots, targets = np.random.default_rng(robots_seed), np.random.default_rng(targets_seed)
-    side = SIDE * math.sqrt(max(1.0, n_robots / CROWD))
-    controls = tuple((speed, turn) for speed in DRIVING_SPEEDS for turn in _turns(headings))
+    side *= math.sqrt(max(1.0, n_robots / crowd))
+    controls = tuple((speed, turn) for speed in speeds for turn in _turns(headings))
     scenario = Scenario(
         robots=tuple(_robot(robots, side, controls) for _ in range(n_robots)),
-        targets=tuple(_target(targets, side, prior_std, process_std) for _ in range(n_targets)),
+        targets=tuple(_target(targets, side, target_speed, (prior_std, process_std)) for _ in range(n_targets)),
         sensor=limited,
         alpha_s=alpha_s,
         alpha_c=alpha_c,
@@ -147,7 +151,8 @@ def _robot(rng: np.random.Generator, side: float, controls: Sequence[tuple[float
     return Robot(x=x, y=y, heading=heading, controls=tuple(controls))
 
 
-def _target(rng: np.random.Generator, side: float, prior_std: float, process_std: float) -> Target:
+def _target(rng: np.random.Generator, side: float, speed: float, stds: tuple[float, float]) -> Target:
+    prior_std, process_std = stds
     if not prior_std > 0:
         raise InputError("prior_std", "must be positive", prior_std)
     variance = float(prior_std) ** 2
@@ -155,7 +160,7 @@ def _target(rng: np.random.Generator, side: float, prior_std: float, process_std
         x=side * float(rng.random()),
         y=side * float(rng.random()),
         covariance=((variance, 0.0), (0.0, variance)),
-        speed=TARGET_SPEED * float(rng.random()),
+        speed=speed * float(rng.random()),
         heading=2 * math.pi * float(rng.random()),
         process_std=process_std,
     )

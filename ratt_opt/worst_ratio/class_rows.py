@@ -15,30 +15,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.worst_ratio.program import MANY_COLUMNS, Inequality
+from ratt_opt.worst_ratio.params import DEFAULT
+from ratt_opt.worst_ratio.program import Inequality
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.worst_ratio.params import WorstRatioParams
 
 __all__ = ["ClassRows", "NonDecreasing", "Submodular"]
-
-ROUNDING = 1e-9
-MOST_ROWS = 3000
-"""Violated class rows added at once, the worst first: only submodular functions of seven robots have more in all."""
-MOST_COMPLETE = 1 << 12
-"""Columns up to which all rows of diminishing returns fit in a program from the start (67,584 rows for 4,096)."""
 
 
 class Submodular:
     """Non-decreasing, submodular, curvature at most ``curvature`` over ``domain``; one column per subset."""
 
-    def __init__(self, n_robots: int, curvature: Fraction, domain: str) -> None:
-        self.n_robots, self.kept, self.domain = n_robots, 1 - curvature, domain
+    def __init__(self, n_robots: int, curvature: Fraction, domain: str, params: WorstRatioParams = DEFAULT) -> None:
+        self.n_robots, self.kept, self.domain, self.params = n_robots, 1 - curvature, domain, params
         self.n = 2 * n_robots
         self.n_columns = 1 << self.n
-        self.is_complete = MANY_COLUMNS <= self.n_columns <= MOST_COMPLETE
+        self.is_complete = params.many_columns <= self.n_columns <= params.complete_columns
 
     def column(self, mask: int) -> int:
         """Column ``mask``: the empty set has none, so column 0 is free for the ratio."""
@@ -82,9 +78,9 @@ class Submodular:
         for a, b in self._pairs():
             base = self._bases(a, b)
             slack = values[base | 1 << a] + values[base | 1 << b] - values[base | 1 << a | 1 << b] - values[base]
-            found += [(float(slack[i]), a, b, int(base[i])) for i in np.flatnonzero(slack < -ROUNDING)]
+            found += [(float(slack[i]), a, b, int(base[i])) for i in np.flatnonzero(slack < -self.params.rounding)]
         found.sort()
-        return [_diminishing(a, b, base) for _, a, b, base in found[:MOST_ROWS]]
+        return [_diminishing(a, b, base) for _, a, b, base in found[: self.params.rows]]
 
     def optimal_values(self, x: FloatArray, used: Collection[int], masks: Sequence[int]) -> FloatArray:  # noqa: ARG002
         """Values of subsets: the program's own."""
@@ -107,8 +103,10 @@ class NonDecreasing:
     curvature is taken over all elements or over feasible sets.
     """
 
-    def __init__(self, n_robots: int, curvature: Fraction, masks: Sequence[int]) -> None:
-        self.n, self.kept = 2 * n_robots, 1 - curvature
+    def __init__(
+        self, n_robots: int, curvature: Fraction, masks: Sequence[int], params: WorstRatioParams = DEFAULT
+    ) -> None:
+        self.n, self.kept, self.params = 2 * n_robots, 1 - curvature, params
         self._columns = {mask: 1 + self.n + k for k, mask in enumerate(dict.fromkeys(masks))}
         self.n_columns = 1 + self.n + len(self._columns)
 
@@ -131,8 +129,8 @@ class NonDecreasing:
         masks = np.array([0, *used], dtype=np.int64)
         values = np.array([0.0, *(x[self._columns[mask]] for mask in used)])
         slack = values[:, None] + self._length(x[1 : 1 + self.n], masks, masks) - values[None, :]
-        pairs = np.argwhere(slack < -ROUNDING)
-        pairs = pairs[np.argsort(slack[tuple(pairs.T)], kind="stable")][:MOST_ROWS]
+        pairs = np.argwhere(slack < -self.params.rounding)
+        pairs = pairs[np.argsort(slack[tuple(pairs.T)], kind="stable")][: self.params.rows]
         return [self.pair(int(masks[i]), int(masks[j])) for i, j in pairs]
 
     def _length(self, marginals: FloatArray, starts: IntArray, ends: IntArray) -> FloatArray:

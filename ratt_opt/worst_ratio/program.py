@@ -13,21 +13,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.worst_ratio.rationals import LARGEST_SQUARE, solve_square
+from ratt_opt.worst_ratio.params import DEFAULT
+from ratt_opt.worst_ratio.rationals import solve_square
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.budget import Budget
+    from ratt_opt.worst_ratio.params import WorstRatioParams
 
     Multipliers = dict[int, Fraction]
     """Rational multipliers by row."""
 
 __all__ = [
-    "BEHIND",
-    "DENOMINATORS",
-    "MANY_COLUMNS",
     "ClaimedOptimum",
     "Inequality",
     "RatioProgram",
@@ -36,9 +35,6 @@ __all__ = [
     "proved_bound",
     "rational_points",
 ]  # fmt: skip
-
-MANY_COLUMNS = 1000
-"""Columns from which on an interior-point method with crossover on all rows beats simplex on a growing list of rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +64,10 @@ class RatioProgram:
     The only mutable object of the search beside its queue: it keeps the solver's basis between the nodes.
     """
 
-    def __init__(self, n_columns: int) -> None:
+    def __init__(self, n_columns: int, params: WorstRatioParams = DEFAULT) -> None:
+        self.params = params
         self._program = LinearProgram(np.eye(1, n_columns)[0])
-        if n_columns >= MANY_COLUMNS:
+        if n_columns >= params.many_columns:
             self._program.option("solver", "ipm")
         self.rows: list[Inequality] = []
         self.on: list[bool] = []
@@ -105,30 +102,22 @@ class RatioProgram:
         return ClaimedOptimum(x=claimed.x, y=claimed.duals, basic_columns=basic_columns, tight_rows=tight_rows)
 
 
-BEHIND = 1e-9
-"""Distance by which a proved bound may stay behind the claimed one before better rationals are tried."""
-DENOMINATORS = (60, 10_000, 1_000_000)
-"""Denominators tried when a float is read as a rational; whatever comes out is checked exactly."""
-NONZERO = 1e-9
-"""Multipliers below this are the solver's rounding of zero."""
-
-
 def proved_bound(program: RatioProgram, claimed: ClaimedOptimum, budget: Budget) -> Fraction:
     """Return a lower bound on the minimum, proved by rational multipliers; 0 (``x_0 >= 0``) if none verifies."""
     best = Fraction(0)
     for multipliers in _candidates(program, claimed, budget):
         best = max(best, checked_bound(program, multipliers) or best)
-        if best > claimed.x[0] - BEHIND:
+        if best > claimed.x[0] - program.params.behind:
             break
     return best
 
 
 def _candidates(program: RatioProgram, claimed: ClaimedOptimum, budget: Budget) -> Iterator[Multipliers]:
     """Yield rational multipliers, cheap ones first."""
-    support = [int(i) for i in np.flatnonzero(claimed.y > NONZERO) if program.on[i]]
-    for denominator in DENOMINATORS:
+    support = [int(i) for i in np.flatnonzero(claimed.y > program.params.nonzero) if program.on[i]]
+    for denominator in program.params.denominators:
         yield {i: Fraction(float(claimed.y[i])).limit_denominator(denominator) for i in support}
-    if len(claimed.tight_rows) > LARGEST_SQUARE:
+    if len(claimed.tight_rows) > program.params.unknowns:
         return
     yield basic_multipliers(program, claimed)
     again = program.solve(budget.seconds_left, afresh=True)
@@ -153,16 +142,16 @@ def basic_multipliers(program: RatioProgram, claimed: ClaimedOptimum) -> Multipl
     """The multipliers of the basis without rounding: columns in it have reduced cost 0. Not checked here."""
     entries = ((column, row, value) for row, column, value in _basis(program, claimed))
     right = [Fraction(int(j == 0)) for j in claimed.basic_columns]
-    solved = solve_square(entries, right, len(claimed.tight_rows))
+    solved = solve_square(entries, right, len(claimed.tight_rows), program.params.unknowns)
     return {i: value for i, value in zip(claimed.tight_rows, solved, strict=True) if value}
 
 
 def rational_points(program: RatioProgram, claimed: ClaimedOptimum) -> Iterator[list[Fraction]]:
     """Yield rational points near a claimed optimum, simple ones first, then the basis's own. Not checked here."""
-    for denominator in DENOMINATORS:
+    for denominator in program.params.denominators:
         yield [Fraction(float(v)).limit_denominator(denominator) for v in claimed.x]
     right = [program.rows[i].least for i in claimed.tight_rows]
-    solved = solve_square(_basis(program, claimed), right, len(claimed.basic_columns))
+    solved = solve_square(_basis(program, claimed), right, len(claimed.basic_columns), program.params.unknowns)
     point = [Fraction(0)] * len(claimed.x)
     for j, value in zip(claimed.basic_columns, solved, strict=True):
         point[j] = value

@@ -15,6 +15,7 @@ from ratt_opt.errors import InputError
 from ratt_opt.running.progress import Step
 from ratt_opt.worst_ratio.class_rows import NonDecreasing, Submodular
 from ratt_opt.worst_ratio.closed_form import proved_ratio
+from ratt_opt.worst_ratio.params import DEFAULT, WorstRatioParams
 from ratt_opt.worst_ratio.ratio_search import RatioSearch, Skeleton, skeleton
 from ratt_opt.worst_ratio.witness import FAMILIES, PLANNERS, RatioQuestion, RatioWitness, replay
 
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from ratt_opt.worst_ratio.class_rows import ClassRows
 
 __all__ = ["WorstCaseRatio", "class_rows", "worst_case_ratio"]
-
-LARGEST_TEAM = 7
-"""Most robots: a witness has ``4**N`` values."""
 
 DOMAINS = ("elements", "feasible")
 
@@ -66,6 +64,7 @@ def worst_case_ratio(
     time_limit: float | None = None,
     use_theorem: bool = True,
     budget: Budget | None = None,
+    params: WorstRatioParams = DEFAULT,
 ) -> WorstCaseRatio:
     """Return a proved bracket on the smallest ratio that ``planner`` can have, over all instances of a class.
 
@@ -76,7 +75,7 @@ def worst_case_ratio(
 
     Parameters
     ----------
-    n_robots : N in [1, 7]
+    n_robots : N in [1, 7] (``params.robots``)
     alpha_s : robots the attacker blinds, in [0, N - 1] (with all robots blinded the optimum is 0)
     alpha_c : links the attacker cuts, in [0, N (N - 1) / 2]
     curvature : in [0, 1]; a float is read as the decimal it prints as, so that 0.3 means 3/10
@@ -88,6 +87,7 @@ def worst_case_ratio(
     use_theorem : start from the largest bound with a written proof (``proved_ratio``) and stop once it is attained;
         ``False`` proves the lower end by multipliers alone
     budget : an outer search's budget: its seconds and interrupts count too
+    params : of its linear programs and rational arithmetic
 
     Raises
     ------
@@ -95,7 +95,7 @@ def worst_case_ratio(
 
     Source: the ratio of Theorem 1 (eqn:appro_non_descrease, eqn:appro_submodular); finite by the argument above.
     """
-    n_robots = check_integer("n_robots", n_robots, low=1, high=LARGEST_TEAM)
+    n_robots = check_integer("n_robots", n_robots, low=1, high=params.robots)
     question = RatioQuestion(
         n_robots=n_robots,
         alpha_s=_check_sensing(alpha_s, n_robots),
@@ -112,7 +112,9 @@ def worst_case_ratio(
     own = Budget.inside(budget, time_limit)
     parts = skeleton(question.n_robots, question.alpha_s, question.alpha_c, question.n_bait)
     floor = proved_ratio(question) if use_theorem else Fraction(0)
-    search = RatioSearch(parts, class_rows(parts, question), lambda table: replay(question.witness(table)), floor)
+    search = RatioSearch(
+        parts, class_rows(parts, question, params), lambda table: replay(question.witness(table)), floor
+    )
     stop = Stop.EXHAUSTED
     try:
         search.run(own)
@@ -143,14 +145,14 @@ def _check_sensing(alpha_s: int, n_robots: int) -> int:
         raise InputError("alpha_s", rule, alpha_s) from None
 
 
-def class_rows(parts: Skeleton, question: RatioQuestion) -> ClassRows:
+def class_rows(parts: Skeleton, question: RatioQuestion, params: WorstRatioParams = DEFAULT) -> ClassRows:
     """Columns and rows of the class that a question is about."""
     if question.family == "submodular":
-        return Submodular(parts.n_robots, question.curvature, question.domain)
+        return Submodular(parts.n_robots, question.curvature, question.domain, params)
     compared = [mask for pair in parts.comparisons for mask in pair]
     groups = parts.groups
     masks = [*compared, *groups, *(group << parts.n_robots for group in groups)]
-    return NonDecreasing(parts.n_robots, question.curvature, masks)
+    return NonDecreasing(parts.n_robots, question.curvature, masks, params)
 
 
 def _result(search: RatioSearch, question: RatioQuestion, stop: Stop) -> WorstCaseRatio:

@@ -26,7 +26,6 @@ from ratt_opt.graph.threat import Threat
 from ratt_opt.search.branch_and_bound import divide_nodes
 from ratt_opt.search.open_nodes import OpenNodes
 from ratt_opt.worst_ratio.program import (
-    BEHIND,
     ClaimedOptimum,
     Inequality,
     RatioProgram,
@@ -110,10 +109,6 @@ def _comparisons(n_robots: int, n_bait: int) -> Iterable[tuple[int, int]]:
         chosen = pick
 
 
-REACHED = 1 - 1e-9
-"""A group reaches value 1 within the solver's rounding; an instance's ratio is exact, so nothing rests on this."""
-
-
 @dataclass(frozen=True, slots=True, order=True)
 class _RatioNode:
     bound: Fraction
@@ -141,7 +136,7 @@ class RatioSearch:
         self.closed = Fraction(1)
         """Smallest bound of the nodes that were left for good."""
         self.nodes = self.programs = 0
-        self.program = RatioProgram(rows.n_columns)
+        self.program = RatioProgram(rows.n_columns, rows.params)
         self._core = frozenset(mask for pair in skeleton.comparisons for mask in pair)
         column, groups = rows.column, skeleton.groups
         self.program.add(rows.first_rows())
@@ -223,7 +218,9 @@ class RatioSearch:
         groups = sorted(self._saved)
         masks = [group << self.skeleton.n_robots for group in groups]
         values = self.rows.optimal_values(claimed.x, self._used(node), masks)
-        reached = {group for group, value in zip(groups, values, strict=True) if value >= REACHED}
+        reached = {
+            group for group, value in zip(groups, values, strict=True) if value >= 1 - self.program.params.reached
+        }
         missed = [outcome for outcome in self.skeleton.outcomes if not reached.intersection(outcome)]
         return min(missed, key=len) if missed else None
 
@@ -240,5 +237,5 @@ class RatioSearch:
                 continue
             if ratio < self.upper:
                 self.upper, self.table = ratio, table
-            if ratio < claimed.x[0] + BEHIND:
+            if ratio < claimed.x[0] + self.program.params.behind:
                 return

@@ -10,12 +10,7 @@ import flint
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-__all__ = ["LARGEST_SQUARE", "fraction", "rational", "solve_exactly", "solve_square"]
-
-LARGEST_SYSTEM = 400
-"""Most unknowns of a system that is reduced: 0.2 s, and six times that for twice as many."""
-LARGEST_SQUARE = 1_500
-"""Most unknowns of a square system that is solved (a few seconds)."""
+__all__ = ["fraction", "rational", "solve_exactly", "solve_square"]
 
 
 def rational(value: Fraction | int) -> flint.fmpq:
@@ -28,12 +23,15 @@ def fraction(value: flint.fmpq) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
-def solve_exactly(columns: Sequence[Mapping[int, Fraction]], target: Mapping[int, Fraction]) -> list[Fraction] | None:
+def solve_exactly(
+    columns: Sequence[Mapping[int, Fraction]], target: Mapping[int, Fraction], *, most: int = 400
+) -> list[Fraction] | None:
     """Return one rational ``x`` with ``sum_i x_i columns[i] = target``, or ``None``.
 
-    Unknowns that the system leaves free are zero. Systems with more than 400 unknowns are not tried.
+    Unknowns that the system leaves free are zero. Systems with more than ``most`` unknowns are not
+    tried: 400 take 0.2 s, twice as many six times that.
     """
-    if len(columns) > LARGEST_SYSTEM:
+    if len(columns) > most:
         return None
     rows = sorted({row for column in columns for row in column} | set(target))
     index = {row: i for i, row in enumerate(rows)}
@@ -55,14 +53,14 @@ def solve_exactly(columns: Sequence[Mapping[int, Fraction]], target: Mapping[int
 
 
 def solve_square(
-    entries: Iterable[tuple[int, int, Fraction]], right: Sequence[Fraction], n_unknowns: int
+    entries: Iterable[tuple[int, int, Fraction]], right: Sequence[Fraction], n_unknowns: int, most: int = 1_500
 ) -> list[Fraction]:
     """Solve a square rational system exactly; all zero if it is singular, not square or too large.
 
-    ``entries`` : (row, column, value); ``right`` : (rows,)
+    ``entries`` : (row, column, value); ``right`` : (rows,); ``most`` : unknowns (1,500 take a few seconds)
     """
     answer = [Fraction(0)] * n_unknowns
-    if len(right) != n_unknowns or not 0 < n_unknowns <= LARGEST_SQUARE:
+    if len(right) != n_unknowns or not 0 < n_unknowns <= most:
         return answer
     matrix = flint.fmpq_mat(n_unknowns, n_unknowns)
     for row, column, value in entries:

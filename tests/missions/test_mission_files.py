@@ -13,7 +13,7 @@ import pytest
 from ratt_opt import InputError, random_scenario, run_mission, save_scenario, solve_maxmin
 from ratt_opt.budget import Budget
 from ratt_opt.cli import run
-from ratt_opt.missions.drawing.frames import SIGMAS, frames_of
+from ratt_opt.missions.drawing.frames import frames_of
 from ratt_opt.missions.players import planners
 
 
@@ -101,7 +101,7 @@ def test_ellipses_hold_95_percent(mission) -> None:
     covariance = mission.steps[-1].team.belief.position_covariance[0]
     long, short, angle = frames_of(mission)[-1]["ellipses"][0]
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    np.testing.assert_allclose(turn @ np.diag([long**2, short**2]) @ turn.T, SIGMAS**2 * covariance, rtol=1e-9)
+    np.testing.assert_allclose(turn @ np.diag([long**2, short**2]) @ turn.T, -2 * np.log(0.05) * covariance, rtol=1e-9)
 
 
 def test_an_interrupted_command_goes_on_from_its_journal(tmp_path, capsys, monkeypatch) -> None:

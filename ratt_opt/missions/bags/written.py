@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt._files import output_directory, write_json, write_together
-from ratt_opt.missions.drawing.frames import MOST_LINKS, ellipse_of
+from ratt_opt.missions.drawing.frames import MOST_LINKS
 from ratt_opt.missions.drawing.log import save_frames
 from ratt_opt.report.csv_file import write_csv
+from ratt_opt.report.ellipses import ellipse_of
 from ratt_opt.report.figure import save_figure
 from ratt_opt.report.lettering import choose_fonts
 from ratt_opt.running.interrupts import imported_whole

@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.report.description import views_of
+from ratt_opt.report.ellipses import ellipse_of
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray
     from ratt_opt.missions.result import FlownMission, MissionStep
     from ratt_opt.report.description import FieldOfView
 
-__all__ = ["MOST_LINKS", "SIGMAS", "ellipse_of", "frames_of", "limits"]
+__all__ = ["MOST_LINKS", "frames_of", "limits"]
 
-SIGMAS = 2.4477
-"""Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
 ENDLESS = 0.15
 """Radius of a field of view without a limit of range, as a share of the diagonal of all places."""
 MOST_LINKS = 80
@@ -69,10 +67,3 @@ def _frame(number: int, step: MissionStep) -> dict[str, Any]:
         "estimates": step.team.belief.positions.tolist(),
         "ellipses": ellipses,
     }
-
-
-def ellipse_of(covariance: FloatArray) -> list[float]:
-    """Half-axes [m] and angle [rad] of the 95 % ellipse."""
-    variances, axes = np.linalg.eigh(covariance)
-    long, short = SIGMAS * np.sqrt(np.clip(variances[::-1], 0.0, None))
-    return [float(long), float(short), float(np.arctan2(axes[1, 1], axes[0, 1]))]

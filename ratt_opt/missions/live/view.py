@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from ratt_opt.missions.drawing.frames import ellipse_of
 from ratt_opt.missions.drawing.rerun_log import RerunLog
+from ratt_opt.report.ellipses import ellipse_of
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.report.description import describe, named
+from ratt_opt.report.ellipses import SIGMAS, ellipse_of
 from ratt_opt.report.fields import FIELD_WORDS, LOST_WORDS, WATCH_WORDS, field_of, watched_pairs
 from ratt_opt.report.spots import SPOTS, best_spot
 
@@ -23,8 +24,6 @@ __all__ = ["legend_html", "map_svg"]
 
 BROAD, NARROW, MARGIN = (800.0, 560.0), (390.0, 460.0), 40.0
 """Width and height of a drawing for desks and of one for telephones, on which words would be too small."""
-SIGMAS = 2.4477
-"""Half-axes of an ellipse that holds 95 % of a two-dimensional Gaussian."""
 MARK = 11.0
 """Half the width of a robot or target."""
 LETTER, LINE, BELOW, SPREAD = 6.8, 14.0, 3.5, 1.3
@@ -188,9 +187,8 @@ def _targets(picture: Picture, place: _Frame) -> Iterator[str]:
 
 
 def _ellipse(x: float, y: float, covariance: FloatArray, scale: float, kind: str) -> str:
-    variances, axes = np.linalg.eigh(covariance)
-    rx, ry = SIGMAS * scale * np.sqrt(variances)
-    turn = -float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0])))
+    long, short, angle = ellipse_of(covariance)
+    rx, ry, turn = scale * long, scale * short, -float(np.degrees(angle))
     where = f'transform="translate({x:.1f} {y:.1f}) rotate({turn:.1f})"'
     return f'<ellipse rx="{rx:.1f}" ry="{ry:.1f}" {where} class="{kind}"/>'
 

@@ -79,7 +79,7 @@ def test_a_tracker_is_shown_as_it_runs(streams: list[Stream]) -> None:
     ):
         offset = outline - centre
         squares = np.einsum("ki,ij,kj->k", offset, np.linalg.inv(spread), offset)
-        np.testing.assert_allclose(squares, 2.4477**2, rtol=1e-9)
+        np.testing.assert_allclose(squares, -2 * np.log(0.05), rtol=1e-9)
     assert told["numbers/skipped"]["given"] == (1.0,)
 
 
