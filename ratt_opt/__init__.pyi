@@ -160,6 +160,7 @@ from .bounds.applicable import (
     all_guarantees as all_guarantees,
     inapplicable_guarantees as inapplicable_guarantees,
 )
+from .bounds.params import BoundParams as BoundParams
 from .bounds.relaxation import (
     relaxation_bound as relaxation_bound,
     relaxation_bounds as relaxation_bounds,

@@ -8,6 +8,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
+from ratt_opt.bounds.params import DEFAULT
 from ratt_opt.budget import Budget
 from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
 from ratt_opt.graph.largest_group.counting import largest_left
@@ -17,21 +18,13 @@ from ratt_opt.graph.threat import Threat
 from ratt_opt.graph.threshold import ThresholdTest
 
 if TYPE_CHECKING:
+    from ratt_opt.bounds.params import BoundParams
     from ratt_opt.problem import Problem
 
 __all__ = ["achievable_group_size", "group_size_bound", "group_size_share", "strongest_robots"]
 
 SOURCE = "group-size bound (this library)"
 IN_COQ = {"k": "paper_group_size_submodular", "c": "paper_group_size_total_curvature"}
-
-
-MOST_ANNEALED = 4_000
-"""Links up to which annealing takes two or three seconds. Measured on disks of mean degree 6: at 30 robots 5 to 9
-together instead of 15 to 21 in 0.05 s, at 100 robots 9 to 12 instead of 9 to 28 in 0.3 s."""
-ANNEALING_SHARE = 0.1
-"""Share of the remaining budget."""
-LARGEST_EXACT = 12
-"""Most robots for which all sets are tabulated on graphs that are not complete: 0.4 s, and four times that for 14."""
 
 
 def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, baits_survive: bool = True) -> Guarantee:
@@ -95,29 +88,29 @@ def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:
     return one if g <= 1 else one / g if submodular else kept / (g - 1 + kept)
 
 
-def achievable_group_size(problem: Problem, budget: Budget | None = None) -> int:
+def achievable_group_size(problem: Problem, budget: Budget | None = None, params: BoundParams = DEFAULT) -> int:
     """Unblinded robots that an attack can keep every group down to while it blinds the strongest unprotected robots.
 
-    The smallest such number on complete graphs without protected links (integer partitions) and for up to 12 robots
-    on any graph; it depends on which robots are the strongest. Otherwise two cuts are tried, one that makes the
-    largest group small and one that makes the most unblinded robots few, and the better one is annealed, up to
-    ``MOST_ANNEALED`` links: the number returned is achievable, and a larger one only weakens the guarantee, as a spent
-    ``budget`` does.
+    The smallest such number on complete graphs without protected links (integer partitions) and for few robots
+    (``params.listed_robots``) on any graph; it depends on which robots are the strongest. Otherwise two cuts are tried,
+    one that makes the largest group small and one that makes the most unblinded robots few, and the better one is
+    annealed, up to ``params.annealed_links``: the number returned is achievable, and a larger one only weakens the
+    guarantee, as a spent ``budget`` does.
     """
     threat = problem.threat
     if threat.links_alike:
         return forced_group_size(problem.n_robots, threat.n_blinded, threat.alpha_c)
     blinded, graph = strongest_robots(problem), problem.communication
     cuts_only = Threat(graph, 0, threat.alpha_c, protected_links=threat.protected_links)
-    if problem.n_robots <= LARGEST_EXACT:
+    if problem.n_robots <= params.listed_robots:
         seeing = sum(1 << i for i in range(problem.n_robots) if i not in blinded)
         counts = np.bitwise_count(np.arange(2**problem.n_robots) & seeing).astype(np.float64)
         test = ThresholdTest(cuts_only, counts)
         return next(g for g in range(problem.n_robots + 1) if test.split(float(g)) is not None)
     tried = (heuristic_cut(cuts_only, budget), heuristic_cut(cuts_only, budget, ignoring=blinded))
     cut = min(tried, key=lambda one: largest_left(graph, one, blinded))
-    part = (budget or Budget()).part(ANNEALING_SHARE)
-    if len(graph.links) <= MOST_ANNEALED and largest_left(graph, cut, blinded) > 1 and part.stop() is None:
+    part = (budget or Budget()).part(params.annealing_share)
+    if len(graph.links) <= params.annealed_links and largest_left(graph, cut, blinded) > 1 and part.stop() is None:
         cut = annealed_cut(cuts_only, cut, 1, part, ignoring=blinded)
     return largest_left(graph, cut, blinded)
 

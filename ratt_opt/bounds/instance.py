@@ -8,6 +8,7 @@ import numpy as np
 
 from ratt_opt.bounds.group_size import achievable_group_size, strongest_robots
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
+from ratt_opt.bounds.params import DEFAULT
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.curvatures.curvature import SECONDS, total_curvature
 from ratt_opt.curvatures.domains import domain_of, over_subsets
@@ -20,15 +21,11 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt.bounds.params import BoundParams
     from ratt_opt.curvatures.curvature import Curvature
     from ratt_opt.problem import Problem
 
 __all__ = ["instance_bound"]
-
-TABLE_SHARE = 0.5
-"""Share of the seconds left in which all subsets have to be looked at; a bracket of the marginals gets the rest."""
-MOST_ROBOTS = 16
-"""Most robots whose subsets are all looked at: one table of 2**16 marginals a robot."""
 
 
 def instance_bound(
@@ -39,6 +36,7 @@ def instance_bound(
     c: Curvature | None = None,
     time_limit: float | None = SECONDS,
     budget: Budget | None = None,
+    params: BoundParams = DEFAULT,
 ) -> Guarantee:
     """Share of the optimum that a plan is worth under the worst attack, from this plan's and this instance's numbers.
 
@@ -63,6 +61,7 @@ def instance_bound(
     c : total curvature over feasible sets of a non-decreasing objective; give exactly one of the two
     time_limit : seconds; what is not known by then counts as nothing
     budget : an outer search's budget: its seconds and interrupts count too
+    params : what is tabulated and annealed
 
     Raises
     ------
@@ -82,7 +81,7 @@ def instance_bound(
     plan = problem.check_plan(elements)
     largest = np.array([given.marginals.largest_upper[choice].max() for choice in problem.choices])
     own = Budget.inside(budget, time_limit)
-    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, own)
+    within = _on_top(problem, plan) if k else _smallest_within(problem, plan, own, params)
     try:
         value = _best_order(within, largest, own)
     except OutOfBudget:
@@ -91,18 +90,18 @@ def instance_bound(
         own.interrupt()
         value = 0.0
     if np.isfinite(largest).all():
-        value = max(value, _by_group_size(problem, plan, largest, own))
+        value = max(value, _by_group_size(problem, plan, largest, own, params))
     needs = (SUBMODULAR if k else NON_DECREASING, "this instance and this plan")
     return Guarantee(min(max(value, 0.0), 1.0), needs, "this instance's marginals and groups", "instance_bound")
 
 
-def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget: Budget) -> float:
+def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget: Budget, params: BoundParams) -> float:
     """Proved value of some robot after any attack over a bound on every plan; ``largest`` (N,) marginals."""
     single = problem.objective.singletons()
     kept = -np.sort(-np.append(single[plan[_free_robots(problem)]], 0.0))[problem.threat.n_blinded]
     safe = max([kept, *(single[plan[i]] for i in problem.protected_robots)])
     left = np.setdiff1d(np.arange(problem.n_robots), list(strongest_robots(problem)))
-    size = min(achievable_group_size(problem, budget), len(left))
+    size = min(achievable_group_size(problem, budget, params), len(left))
     if not size:
         return 1.0
     excess = np.maximum(largest[left] - [single[problem.choices[i]].max() for i in left], 0.0)
@@ -142,14 +141,16 @@ def _on_top(problem: Problem, plan: IntArray) -> Callable[[IntArray, int], float
     return within
 
 
-def _smallest_within(problem: Problem, plan: IntArray, budget: Budget) -> Callable[[IntArray, int], float]:
+def _smallest_within(
+    problem: Problem, plan: IntArray, budget: Budget, params: BoundParams
+) -> Callable[[IntArray, int], float]:
     """Smallest marginals of a robot's element over subsets of some others'."""
     f, robots = problem.objective, len(plan)
     values = None
-    domain = domain_of(f, None, plan) if robots <= MOST_ROBOTS else None
+    domain = domain_of(f, None, plan) if robots <= params.table_robots else None
     if domain is not None:
         try:
-            values = domain.values(budget.part(TABLE_SHARE))
+            values = domain.values(budget.part(params.table_share))
         except OutOfBudget:
             pass
         except KeyboardInterrupt:

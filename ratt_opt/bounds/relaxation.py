@@ -12,6 +12,7 @@ import numpy as np
 
 from ratt_opt._values import ByValue
 from ratt_opt.bounds.cuts import GroupCut, combined_bound, mixed_information, tangent_cut, uniform_selection
+from ratt_opt.bounds.params import DEFAULT
 from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import non_dominated_outcomes, realise
@@ -22,30 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from ratt_opt._validation import FloatArray
+    from ratt_opt.bounds.params import BoundParams
     from ratt_opt.problem import Problem
 
 __all__ = ["RelaxationBound", "relaxation_bound", "relaxation_bounds"]
-
-TARGETS_A_GROUP = 6
-"""Targets of a group whose tangents enter (max-eigenvalue): more can only strengthen the bound. Not measured."""
-AVERAGING_STEPS = 12
-"""Conditional-gradient steps on a smaller group: more can only strengthen its bound. Not measured."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ConicParams:
-    """Accuracy asked of the conic solver.
-
-    ``tolerance`` : of gap and feasibility [1]: the bound, by tangents at its point, is wider than the optimum by about
-        its root, times how curved the criterion is; a smaller one takes a few more steps
-    ``relaxed`` : the same once the solver failed
-    """
-
-    tolerance: float = 1e-10
-    relaxed: float = 1e-8
-
-
-CONIC = ConicParams()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -63,7 +44,12 @@ class RelaxationBound(ByValue):
 
 
 def relaxation_bound(
-    problem: Problem, attacks: Sequence[Attack], *, time_limit: float | None = None, budget: Budget | None = None
+    problem: Problem,
+    attacks: Sequence[Attack],
+    *,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
+    params: BoundParams = DEFAULT,
 ) -> RelaxationBound:
     """Bound the optimum by letting every robot mix its elements against the given attacks.
 
@@ -78,6 +64,7 @@ def relaxation_bound(
     attacks : at least one, within the budgets; the worst attacks on good plans give good bounds
     time_limit : seconds for the conic solver; the point it has reached by then gives a bound. Unlimited by default
     budget : an outer search's budget: its seconds count too
+    params : accuracy of the conic solver, and tangents
 
     Raises
     ------
@@ -92,9 +79,11 @@ def relaxation_bound(
     if () in largest:
         nothing, selection = objective([]), uniform_selection(problem)
         return RelaxationBound(upper=nothing, claimed=nothing, selection=selection, status="an attack leaves nobody")
-    claimed, selection, status = _solve(problem, largest, Budget.inside(budget, time_limit))
-    cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection)]
-    computed = float(max([_best_combination(problem, cuts), *(_group_bound(problem, group) for group in others)]))
+    claimed, selection, status = _solve(problem, largest, Budget.inside(budget, time_limit), params)
+    cuts = [cut for group in largest for cut in _cuts_at(problem, group, selection, params)]
+    computed = float(
+        max([_best_combination(problem, cuts), *(_group_bound(problem, group, params) for group in others)])
+    )
     _, upper = problem.widen_by_rounding(0.0, computed)
     return RelaxationBound(upper=upper, claimed=claimed, selection=selection, status=status)
 
@@ -111,7 +100,9 @@ def _groups(problem: Problem, attacks: Sequence[Attack]) -> tuple[list[tuple[int
     return list(largest), list(others)
 
 
-def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) -> tuple[float, FloatArray, str]:
+def _solve(
+    problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget, params: BoundParams
+) -> tuple[float, FloatArray, str]:
     if budget.is_over:
         return float("nan"), uniform_selection(problem), "not asked: no time"
     cp = imported_whole("cvxpy")
@@ -122,7 +113,7 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) 
     constraints += [t <= objective.conic_value(_posterior(problem, group, z)) for group in groups]
     program = cp.Problem(cp.Maximize(t), constraints)
     selection = uniform_selection(problem)
-    fault = _narrowed(program, budget)
+    fault = _narrowed(program, budget, params)
     if fault is not None:
         return float("nan"), selection, f"solver error: {fault}"
     if z.value is not None:
@@ -133,10 +124,10 @@ def _solve(problem: Problem, groups: Sequence[tuple[int, ...]], budget: Budget) 
     return claimed, selection, str(program.status)
 
 
-def _narrowed(program: Any, budget: Budget) -> Exception | None:
+def _narrowed(program: Any, budget: Budget, params: BoundParams) -> Exception | None:
     """Solve a program as narrowly as the solver can; return its fault if it cannot."""
     cp, fault = imported_whole("cvxpy"), None
-    for tolerance in (CONIC.tolerance, CONIC.relaxed):
+    for tolerance in (params.tolerance, params.relaxed):
         if fault is not None and budget.is_over:
             break
         limit = {} if isinf(budget.seconds_left) else {"time_limit": budget.seconds_left}
@@ -161,11 +152,11 @@ def _posterior(problem: Problem, group: tuple[int, ...], z: Any) -> list[Any]:
     return [prior + information for prior, information in zip(objective.prior_information, mixed, strict=True)]
 
 
-def _cuts_at(problem: Problem, group: tuple[int, ...], selection: FloatArray) -> list[GroupCut]:
+def _cuts_at(problem: Problem, group: tuple[int, ...], selection: FloatArray, params: BoundParams) -> list[GroupCut]:
     objective = problem.information_objective
     inside = np.isin(problem.robot, group)
     point = objective.prior_information + np.einsum("e,ejkl->jkl", selection[inside], objective.information[inside])
-    targets = objective.tangent_targets(point, np.inf, TARGETS_A_GROUP)
+    targets = objective.tangent_targets(point, np.inf, max(params.tangent_targets, 1))
     return [tangent_cut(problem, group, point, target) for target in targets]
 
 
@@ -190,15 +181,15 @@ def _best_combination(problem: Problem, cuts: Sequence[GroupCut]) -> float:
     return min(combined_bound(constants, scores, weights, problem.choices)[0] for weights in candidates)
 
 
-def _group_bound(problem: Problem, group: tuple[int, ...]) -> float:
+def _group_bound(problem: Problem, group: tuple[int, ...], params: BoundParams) -> float:
     """Upper bound on one group's value for every plan: tangents along conditional-gradient averaging steps."""
     single = problem.objective.singletons()
     best = np.array([choice[single[choice].argmax()] for choice in problem.choices])
     selection = np.zeros(problem.objective.n)
     selection[best] = 1.0
     upper = np.inf
-    for step in range(AVERAGING_STEPS):
-        cut = _cuts_at(problem, group, selection)[0]
+    for step in range(max(params.averaging, 1)):
+        cut = _cuts_at(problem, group, selection, params)[0]
         bound, combined = combined_bound(np.array([cut.constant]), cut.scores[None], np.ones(1), problem.choices)
         upper = min(upper, bound)
         vertex = np.zeros(problem.objective.n)
@@ -207,18 +198,19 @@ def _group_bound(problem: Problem, group: tuple[int, ...]) -> float:
     return upper
 
 
-MOST_OUTCOMES = 20_000
-"""Every outcome is evaluated in every round."""
-
-
 def relaxation_bounds(
-    problem: Problem, *, tolerance: float = 1e-7, time_limit: float | None = None, budget: Budget | None = None
+    problem: Problem,
+    *,
+    tolerance: float = 1e-7,
+    time_limit: float | None = None,
+    budget: Budget | None = None,
+    params: BoundParams = DEFAULT,
 ) -> Iterator[RelaxationBound]:
     """Yield bounds on the optimum as the attack that hurts the relaxed plan most enters, round by round.
 
     It ends if no attack leaves the relaxed plan less than the program claims, up to ``tolerance`` relative to the
     claim. Then the last item is the bound of the relaxation over all attacks. Every item is a valid bound. A spent
-    ``time_limit``, or ``budget`` (an outer search's), ends them early.
+    ``time_limit``, or ``budget`` (an outer search's), ends them early; ``params`` : as for :func:`relaxation_bound`.
 
     Raises
     ------
@@ -227,10 +219,10 @@ def relaxation_bounds(
     objective = check_problem(problem).information_objective
     whole, outcomes = (
         Budget.inside(budget, time_limit),
-        list(islice(non_dominated_outcomes(problem.threat), MOST_OUTCOMES + 1)),
+        list(islice(non_dominated_outcomes(problem.threat), params.outcomes + 1)),
     )
-    if len(outcomes) > MOST_OUTCOMES:
-        rule = f"must leave at most {MOST_OUTCOMES} outcomes to go through (use solve_maxmin)"
+    if len(outcomes) > params.outcomes:
+        rule = f"must leave at most {params.outcomes} outcomes to go through (use solve_maxmin)"
         raise InputError("problem", rule, f"{problem.n_robots} robots")
     robots = np.arange(problem.n_robots)
     rows = np.array([np.isin(robots, list(group)) for outcome in outcomes for group in outcome], dtype=np.float64)
@@ -246,6 +238,6 @@ def relaxation_bounds(
             return
         entered.append(worst)
         attacks = [Attack(*realise(problem.threat, outcomes[k])) for k in entered]
-        bound = relaxation_bound(problem, attacks, budget=whole)
+        bound = relaxation_bound(problem, attacks, budget=whole, params=params)
         yield bound
         selection, level = bound.selection, bound.claimed

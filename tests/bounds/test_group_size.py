@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.bounds import group_size
+from ratt_opt import BoundParams
 from ratt_opt.bounds.group_size import achievable_group_size
 from ratt_opt.bounds.survivors import largest_survivor_group
 from ratt_opt.budget import Budget
@@ -85,24 +85,22 @@ def test_the_group_size_of_a_large_graph_is_achieved():
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_annealed_groups_are_never_larger_than_by_cheapest_cuts(seed, monkeypatch):
+def test_annealed_groups_are_never_larger_than_by_cheapest_cuts(seed):
     objective = ro.random_scenario(24, 2, alpha_s=0, alpha_c=0, seed=seed).problem().objective
     graph = nx.random_geometric_graph(24, 0.32, seed=seed)
     links = sorted((min(e), max(e)) for e in graph.edges)
     held = frozenset(links[:: 7 + seed])
     problem = ro.Problem(objective, np.repeat(np.arange(24), 12), graph, 5, len(links) // 6, protected_links=held)
     found = achievable_group_size(problem)
-    monkeypatch.setattr(group_size, "MOST_ANNEALED", 0)
-    assert found <= achievable_group_size(problem)
+    assert found <= achievable_group_size(problem, params=BoundParams(annealed_links=0))
 
 
-def test_annealing_finds_smaller_groups_than_cheapest_cuts(monkeypatch):
+def test_annealing_finds_smaller_groups_than_cheapest_cuts():
     objective = ro.random_scenario(30, 2, alpha_s=0, alpha_c=0, seed=0).problem().objective
     graph = nx.random_geometric_graph(30, 0.252, seed=0)
     problem = ro.Problem(objective, np.repeat(np.arange(30), 12), graph, 9, 21)
     annealed = achievable_group_size(problem)
-    monkeypatch.setattr(group_size, "MOST_ANNEALED", 0)
-    assert 2 * annealed < achievable_group_size(problem)
+    assert 2 * annealed < achievable_group_size(problem, params=BoundParams(annealed_links=0))
 
 
 def test_a_spent_budget_weakens_the_group_size_at_most():
