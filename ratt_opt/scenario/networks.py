@@ -34,7 +34,7 @@ class NetworkShape:
 
     ``density`` : share of all links of the dense random graph: about the share of robots that one hears in a building
     ``neighbours``, ``rewired`` : of the small world: neighbours on a ring, and the share of links that lead elsewhere
-        (Watts and Strogatz, Nature 393, 1998)
+    (Watts and Strogatz, Nature 393, 1998)
     ``attached`` : links with which a robot joins the hubs (Barabasi and Albert, Science 286, 1999)
     """
 

@@ -16,7 +16,7 @@ class WorstRatioParams:
     ``robots`` : of a team, at most: a witness has ``4**N`` values
     ``many_columns`` : from which on an interior-point method with crossover on all rows beats simplex on a growing list
     ``complete_columns`` : up to which all rows of diminishing returns fit in a program from the start (67,584 rows for
-        4,096 columns); with more, violated ones are added
+    4,096 columns); with more, violated ones are added
     ``rows`` : violated class rows added at once, the worst first: fewer programs against larger ones
     ``rounding`` : violation of a row [1] that counts as the solver's rounding; a smaller one adds rows in vain
     ``behind`` : distance by which a proved bound may stay behind the claimed one before better rationals are tried
