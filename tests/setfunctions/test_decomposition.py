@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 from fractions import Fraction
-from itertools import product
+from itertools import combinations, combinations_with_replacement, product
 
 import numpy as np
 import pytest
@@ -115,6 +115,38 @@ def test_overestimators_bound_every_set(seed):
                 assert (bound.constant + sets @ bound.gains - values).min() >= 0
 
 
+def parts_of_twelve(rng):
+    """One function of every kind whose parts twelve elements touch at most: enumerated parts, maxima and criteria."""
+    n = int(rng.integers(2, 13))
+    yield ro.FacilityLocation(rng.random((n, 2)) * 10.0 ** rng.integers(-3, 4))
+    yield ro.Coverage(rng.random((n, 2)) < rng.uniform(0.2, 0.9), rng.random(2))
+    table = np.maximum.accumulate(rng.random(2**n)) if rng.random() < 0.5 else rng.random(2**n)
+    mass = rng.random(n)
+    root = ro.Part(range(n), lambda membership: np.sqrt(membership @ mass), weight=2.0)
+    yield ro.SumFunction(n, [ro.Part(rng.permutation(n), table), root])
+    for kind in CRITERIA:
+        yield criterion(kind, rng, n=n, targets=2, d=int(rng.integers(1, 4)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(100))
+def test_a_hundred_thousand_overestimators_bound_every_set(seed):
+    """A thousand inequalities a seed, each against all sets of the elements that touch its part."""
+    rng, done = np.random.default_rng([8, seed]), 0
+    while done < 1000:
+        for f in parts_of_twelve(rng):
+            parts = f.decomposition()
+            for j in range(parts.n_parts):
+                sets = subsets(len(parts.touching(j)))
+                values, whole = parts.part_values(j, sets), sets.astype(np.float64)
+                for _ in range(20):
+                    share = rng.random(sets.shape[1]) ** rng.integers(1, 4) * (rng.random(sets.shape[1]) < 0.8)
+                    bound = parts.overestimator(j, share)
+                    assert (bound.gains >= 0).all()
+                    assert (bound.constant + whole @ bound.gains - values).min() >= 0
+                    done += 1
+
+
 def test_overestimators_of_maxima_hold_in_exact_arithmetic():
     rng = np.random.default_rng(3)
     for _ in range(30):
@@ -123,6 +155,26 @@ def test_overestimators_of_maxima_hold_in_exact_arithmetic():
         for members in subsets(5):
             best = max((Fraction(u) for u in f.utility[members, 0]), default=Fraction(0))
             assert Fraction(bound.constant) + sum(map(Fraction, bound.gains[members])) >= best
+
+
+@pytest.mark.parametrize(("robots", "lost"), [(4, 0), (4, 1), (5, 2), (4, 3), (3, 3)])
+def test_mean_values_after_losses_are_bounded_for_every_plan(robots, lost):
+    """By definition: each plan of some robots, elements chosen twice too, and each set of robots that may be lost."""
+    rng = np.random.default_rng([robots, lost])
+    f = ro.FacilityLocation(np.round(rng.random((5, 2)), 1))
+    plans = list(combinations_with_replacement(range(5), robots))
+    for part in range(2):
+        touching = f.touching(part)
+        utility = f.utility[:, part]
+        counts = np.array([[plan.count(e) for e in touching] for plan in plans], dtype=float)
+        left = [[utility[list(some)].max(initial=0.0) for some in combinations(plan, robots - lost)] for plan in plans]
+        means = np.array(left).mean(axis=1)
+        for share in (*counts[::7], *(rng.random((6, len(touching))) * 2)):
+            bound = f.mean_overestimator(part, share, robots, lost)
+            assert (bound.gains >= 0).all()
+            assert (bound.constant + counts @ bound.gains - means).min() >= -1e-15
+        for plan, mean in zip(counts, means, strict=True):
+            assert f.mean_overestimator(part, plan, robots, lost).at(plan) == pytest.approx(mean)
 
 
 def envelope(values, sets, share):

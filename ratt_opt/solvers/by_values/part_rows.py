@@ -174,7 +174,12 @@ class PartRows:
         return [(np.asarray(self._outcomes.left[k][self._problem.robot]), ()) for k in lowest]
 
     def _bound_parts(self, at: FloatArray, point: FloatArray, values: FloatArray, budget: Budget) -> bool:
-        """Add bounds of parts at one plan that are below the program's values at another; whether there are any."""
+        """Add bounds of parts at one plan that are below the program's values at another; whether there are any.
+
+        They bound the mean over all outcomes; if all robots are of one kind, exactly that, else at the mean outcome.
+        """
+        if len(self.columns.sizes) == 1:
+            return self._bound_means(at, point, values, budget)
         inside = self._outcomes.left[0][self._problem.robot]
         share, whole, added = self.columns.share(at) * inside, self.columns.share(point) * inside, False
         for j, touching in enumerate(self._touching):
@@ -183,6 +188,20 @@ class PartRows:
             if weight * bound.at(whole[touching]) < values[j] - self._params.tolerance * abs(values[j]):
                 one = self._inequalities([(j, bound)])
                 self._use(PartRow(float(one.constants[0]), one.scores[:, 0] * inside, part=j))
+                added = True
+        return added
+
+    def _bound_means(self, at: FloatArray, point: FloatArray, values: FloatArray, budget: Budget) -> bool:
+        """Add bounds of what parts are worth in the mean over all sets of robots that an attack may blind."""
+        f, robots, lost = self._problem.objective, self._problem.n_robots, self._problem.threat.n_blinded
+        assert isinstance(f, BestElements)
+        share, whole, added = self.columns.share(at), self.columns.share(point), False
+        for j, touching in enumerate(self._touching):
+            budget.check()
+            bound, weight = f.mean_overestimator(j, share[touching], robots, lost), self._parts.weights[j]
+            if weight * bound.at(whole[touching]) < values[j] - self._params.tolerance * abs(values[j]):
+                one = self._inequalities([(j, bound)])
+                self._use(PartRow(float(one.constants[0]), one.scores[:, 0], part=j))
                 added = True
         return added
 
