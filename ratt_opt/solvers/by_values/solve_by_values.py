@@ -59,10 +59,10 @@ def solve_by_values(  # noqa: PLR0917  (as solve_maxmin has them)
         search.learn(found)
         if not budget.is_over:
             search.bound_first()
-        closed = search.climb_first(gap)
-        if otherwise is not None and not closed:
-            budget.check()
+        if otherwise is not None and not budget.is_over:
             search.learn(otherwise())
+        closed = search.climb_first(gap)
+        if not closed:
             budget.check()
         stop = Stop.CLOSED if closed else search.run(gap)
     except OutOfBudget as out:
