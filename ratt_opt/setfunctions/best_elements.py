@@ -83,7 +83,7 @@ class BestElements(SumFunction):
         return Overestimator(level, rounded_up(u - level))
 
     def mean_overestimator(self, part: int, share: FloatArray, robots: int, lost: int) -> Overestimator:
-        """The concave envelope, at a point (k,), of the mean value of what is left of a plan of ``robots`` elements.
+        """The concave envelope, at a point (k,), of the mean value of a plan of ``robots`` elements after losses.
 
         Each set of ``lost`` robots is lost alike. The best element is left with probability ``w_1``, the second best
         is the best one left with ``w_2``, and so on: ``w_k = C(robots - k, lost - k + 1) / C(robots, lost)``. So the
