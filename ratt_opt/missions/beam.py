@@ -16,6 +16,7 @@ import numpy as np
 
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.budget import Budget, Stop
+from ratt_opt.errors import InputError
 from ratt_opt.missions.ahead.horizon import Sequences, extended
 from ratt_opt.solvers.maxmin.proof import ElementBranch, Leaf, UpperProof, WinnerBranch
 from ratt_opt.solvers.maxmin.solve import check_limits, solve_in_coordinates
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["beam_sequences", "best_alone", "solve_by_columns"]
-
-INNER_SHARE = 0.5
-"""Share of the gap for the search over some elements; the rest is for the elements left out."""
 
 
 def beam_sequences(world: World, belief: Belief, poses: FloatArray, time: float) -> Sequences:
@@ -56,7 +54,12 @@ def best_alone(values: FloatArray, owner: IntArray, width: int) -> IntArray:
 
 
 def solve_by_columns(
-    problem: Problem, start: IntArray, *, gap: float = 0.01, time_limit: float | None = None
+    problem: Problem,
+    start: IntArray,
+    *,
+    gap: float = 0.01,
+    time_limit: float | None = None,
+    inner_share: float = 0.5,
 ) -> MaxMinResult:
     """Bracket the optimum over all elements, searching only among those that matter.
 
@@ -65,6 +68,7 @@ def solve_by_columns(
     problem : of an information criterion; relies on it being non-decreasing
     start : elements to begin with, at least one of each robot
     gap, time_limit : as for :func:`solve_maxmin`
+    inner_share : of the gap, in [0, 1], for the search over some elements; the rest is for the elements left out
 
     Returns
     -------
@@ -75,6 +79,8 @@ def solve_by_columns(
     InputError : a limit is negative, or the objective is no information criterion.
     """
     check_limits(gap, time_limit)
+    if not 0 <= inner_share <= 1:
+        raise InputError("inner_share", "must be in [0, 1]", inner_share)
     budget, kept = Budget(time_limit), np.unique(start)
     objective = problem.information_objective
     upper, nodes, evaluations = np.inf, 0, 0
@@ -82,7 +88,7 @@ def solve_by_columns(
         part = replace(problem, objective=objective.restricted_to(kept), robot=problem.robot[kept])
         within = Budget.inside(budget, time_limit and budget.seconds_left)
         # Covers and inequalities of base sets have no prices.
-        found = solve_in_coordinates(part, within, INNER_SHARE * gap, stages=TREES_ALONE, by_rows=False)
+        found = solve_in_coordinates(part, within, inner_share * gap, stages=TREES_ALONE, by_rows=False)
         nodes, evaluations = nodes + found.nodes, evaluations + found.evaluations
         fresh: IntArray = np.zeros(0, dtype=np.int64)
         if found.proof is not None:

@@ -30,12 +30,6 @@ if TYPE_CHECKING:
 __all__ = ["ScenarioPlan", "scenario_program"]
 
 
-TOLERANCE = 1e-6
-"""Relative room around the ends known, for the rounding of HiGHS."""
-FIRST_GAP = 1e-4
-"""Relative gap of HiGHS while attacks are added: its proofs of the last ten-thousandth take most of the time."""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ScenarioPlan(Plan):
     """A plan of the scenario program.
@@ -59,6 +53,8 @@ def scenario_program(
     gap: float = 1e-6,
     budget: Budget | None = None,
     on_improvement: Callable[[ScenarioPlan], object] | None = None,
+    first_gap: float = 1e-4,
+    tolerance: float = 1e-6,
 ) -> ScenarioPlan:
     """Plan by the scenario program, for coverage and facility location.
 
@@ -67,6 +63,8 @@ def scenario_program(
     time_limit : seconds; ``None`` for none
     gap : relative gap at which the search stops
     on_improvement : called with what is known after each attack
+    first_gap : relative gap of HiGHS while attacks are added: proofs of the last ten-thousandth take most of the time
+    tolerance : relative room around the ends known, for the rounding of HiGHS
 
     Raises
     ------
@@ -78,8 +76,10 @@ def scenario_program(
     if not isinstance(check_problem(problem).objective, BestElements):
         rule = "must be Coverage or FacilityLocation for the scenario program, whose rows are linear"
         raise InputError("objective", rule, type(problem.objective).__name__)
-    check_number("gap", gap, low=0)
-    return _ScenarioSearch(problem, Budget.inside(budget, time_limit), gap, on_improvement).run()
+    for name, value in (("gap", gap), ("first_gap", first_gap), ("tolerance", tolerance)):
+        check_number(name, value, low=0)
+    rows = _ScenarioRows(problem, first_gap, tolerance)
+    return _ScenarioSearch(problem, Budget.inside(budget, time_limit), gap, on_improvement, rows).run()
 
 
 @dataclass(slots=True)
@@ -88,6 +88,7 @@ class _ScenarioSearch:
     budget: Budget
     gap: float
     on_improvement: Callable[[ScenarioPlan], object] | None
+    rows: _ScenarioRows
     best: IntArray = field(init=False)
     lower: float = field(init=False, default=-inf)
     upper: float = field(init=False)
@@ -96,7 +97,7 @@ class _ScenarioSearch:
         """Add attacks until the ends meet or the budget is spent."""
         self.best, attacks = ratt(self.problem, budget=self.budget).elements, 0
         self.upper = float(self.problem.objective(range(self.problem.objective.n)))
-        attack, model, met = self._attack(self.best), _ScenarioRows(self.problem), set[Attack]()
+        attack, model, met = self._attack(self.best), self.rows, set[Attack]()
         while not self._closed and not self.budget.is_over:
             if attack not in met:
                 model.add_attack(attack)
@@ -140,6 +141,8 @@ class _ScenarioRows:
     """The program so far; ``shares`` of a utility level are variables, as in text books on p-median."""
 
     problem: Problem
+    first_gap: float
+    tolerance: float
     highs: Any = field(init=False)
     _least: Any = field(init=False)
     _chosen: list[Any] = field(init=False)
@@ -152,7 +155,7 @@ class _ScenarioRows:
 
         self._integer = highspy.HighsVarType.kInteger
         highs = self.highs = silent_solver()()
-        for name, value in {"threads": 1, "random_seed": 0, "mip_rel_gap": FIRST_GAP}.items():
+        for name, value in {"threads": 1, "random_seed": 0, "mip_rel_gap": self.first_gap}.items():
             highs.setOptionValue(name, value)
         f = self.problem.objective
         self._most = float(f(range(f.n)))
@@ -197,7 +200,7 @@ class _ScenarioRows:
     def solve(self, budget: Budget, lower: float, upper: float) -> tuple[IntArray | None, float]:
         """The plan that HiGHS found between the ends known, or ``None``, and the bound that it claims."""
         highs = self.highs
-        highs.changeColBounds(self._least.index, lower * (1 - TOLERANCE), upper * (1 + TOLERANCE))
+        highs.changeColBounds(self._least.index, lower * (1 - self.tolerance), upper * (1 + self.tolerance))
         asked = (highs.cbMipInterrupt, highs.cbSimplexInterrupt, highs.cbIpmInterrupt)
 
         with interrupts_afterwards() as met:

@@ -210,3 +210,15 @@ def test_no_planner_beats_the_optimum_and_all_pairs_of_lost_robots_are_counted()
         plan = list(PUBLISHED[name].plan(problem))
         left = [[plan[i] for i in range(5) if i not in pair] for pair in combinations(range(5), 2)]
         assert min(problem.objective(some) for some in left) <= top
+
+
+@pytest.mark.parametrize("first_gap", [0.0, 1.0])
+@pytest.mark.parametrize("tolerance", [0.0, 0.1])
+def test_the_scenario_program_is_exact_whatever_highs_is_asked_at_first(first_gap, tolerance):
+    covers = np.random.default_rng(0).random((6, 8)) < 0.4
+    f = ro.Coverage(covers, np.ones(8))
+    problem = ro.Problem(f, np.repeat(np.arange(3), 2), None, 1, 0)
+    found = scenario_program(problem, first_gap=first_gap, tolerance=tolerance)
+    assert found.lower == pytest.approx(brute_force_optimum(problem))
+    with pytest.raises(ro.InputError, match="tolerance must be a finite number >= 0"):
+        scenario_program(problem, tolerance=-1.0)
