@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
-    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
-    from ratt_opt.solvers.maxmin.turn import Progress
+    from ratt_opt.solvers.maxmin.time_slices import Progress, TimeSlices
 
 __all__ = ["ConcaveTree"]
 

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
-    from ratt_opt.solvers.maxmin.turn import Turn
+    from ratt_opt.solvers.maxmin.time_slices import TimeSlices, Turn
 
 __all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
 

@@ -17,7 +17,7 @@ from ratt_opt.solvers.maxmin.time_slices import TimeSlicesUntil
 if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.turn import Progress, Turn
+    from ratt_opt.solvers.maxmin.time_slices import Progress, Turn
 
 __all__ = ["RestartedSearch"]
 

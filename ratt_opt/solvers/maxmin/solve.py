@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.solvers.maxmin.params import MaxMinParams
     from ratt_opt.solvers.maxmin.stages.bound_stage import BoundStage
-    from ratt_opt.solvers.maxmin.turn import Progress
+    from ratt_opt.solvers.maxmin.time_slices import Progress
 
 __all__ = [
     "check_limits",

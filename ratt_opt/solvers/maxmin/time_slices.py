@@ -1,7 +1,8 @@
-"""Time slices of a search for the upper bound, between which the best plan is proved, or another search runs."""
+"""Time slices and turns of searches for the upper bound; between them the best plan is proved, or another one runs."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ratt_opt.budget import Stop
@@ -12,7 +13,9 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
 
-__all__ = ["TimeSlices", "TimeSlicesUntil"]
+    Progress = Callable[[int, float, float], None] | None
+
+__all__ = ["TimeSlices", "TimeSlicesUntil", "Turn"]
 
 
 class TimeSlices:
@@ -58,3 +61,17 @@ class TimeSlicesUntil(TimeSlices):
     def stop(self) -> Stop | None:
         """Return the reason to stop searching now, if there is one."""
         return self._slices.stop() or (Stop.NODES if self._is_enough() else None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Turn:
+    """One turn of a search: ``nodes`` that it may spend, within ``slices``, which say when to stop.
+
+    ``upper`` : proved by all searches so far; infinite if there are no others
+    ``progress`` : called as ``progress(nodes, lower, upper)``
+    """
+
+    slices: TimeSlices
+    progress: Progress
+    upper: float
+    nodes: float

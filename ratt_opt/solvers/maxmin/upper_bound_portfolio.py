@@ -13,7 +13,7 @@ import numpy as np
 from ratt_opt.attack.staging import LEFT_OUT
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.stages import schedule
-from ratt_opt.solvers.maxmin.turn import Turn
+from ratt_opt.solvers.maxmin.time_slices import Turn
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.stages.bound_stage import BoundSearch, BoundStage, TurnShare
-    from ratt_opt.solvers.maxmin.time_slices import TimeSlices
-    from ratt_opt.solvers.maxmin.turn import Progress
+    from ratt_opt.solvers.maxmin.time_slices import Progress, TimeSlices
 
 __all__ = ["UpperBoundPortfolio"]
 

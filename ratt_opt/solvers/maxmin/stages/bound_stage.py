@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Stop
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.turn import Turn
+    from ratt_opt.solvers.maxmin.time_slices import Turn
 
 __all__ = ["BoundSearch", "BoundStage", "TurnShare"]
 
