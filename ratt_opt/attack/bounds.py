@@ -17,7 +17,7 @@ from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
-    from ratt_opt.attack.params.groups import BoundParams
+    from ratt_opt.attack.params.groups import AttackBoundParams
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
@@ -151,7 +151,7 @@ def tree_bound(  # noqa: PLR0917
     threat: Threat,
     budget: Budget,
     enough: float,
-    params: BoundParams = DEFAULT.bounds,
+    params: AttackBoundParams = DEFAULT.bounds,
 ) -> float:
     """No attack on a plan (N,) leaves less; relies on a non-decreasing objective. ``-inf`` if nothing is known.
 

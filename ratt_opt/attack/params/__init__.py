@@ -11,7 +11,7 @@ from ratt_opt._params import check_at_least_one
 from ratt_opt.attack.params.groups import (
     AllSetsParams,
     AnnealingParams,
-    BoundParams,
+    AttackBoundParams,
     DualPriceParams,
     ListedParams,
     MasterParams,
@@ -51,9 +51,9 @@ __all__ = [
     "AllSetsParams",
     "AnnealingParams",
     "AscentParams",
+    "AttackBoundParams",
     "AttackParams",
     "AxisParams",
-    "BoundParams",
     "BranchingParams",
     "CoverParams",
     "CriterionParams",
@@ -101,7 +101,7 @@ class AttackParams:
     protection: ProtectionParams = field(default_factory=ProtectionParams)
     all_sets: AllSetsParams = field(default_factory=AllSetsParams)
     annealing: AnnealingParams = field(default_factory=AnnealingParams)
-    bounds: BoundParams = field(default_factory=BoundParams)
+    bounds: AttackBoundParams = field(default_factory=AttackBoundParams)
     trees: TreeParams = field(default_factory=TreeParams)
     threshold: ThresholdParams = field(default_factory=ThresholdParams)
     pricing: PricingParams = field(default_factory=PricingParams)

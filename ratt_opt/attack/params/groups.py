@@ -7,7 +7,7 @@ from dataclasses import dataclass
 __all__ = [
     "AllSetsParams",
     "AnnealingParams",
-    "BoundParams",
+    "AttackBoundParams",
     "DualPriceParams",
     "ListedParams",
     "MasterParams",
@@ -71,7 +71,7 @@ class AnnealingParams:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoundParams:
+class AttackBoundParams:
     """Bounds by tree inequalities; shares are of the remaining budget.
 
     ``share`` : on sparse graphs. ``short_share``, ``short`` : the same for a short search, up to a number of seconds
