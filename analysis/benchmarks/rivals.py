@@ -1,9 +1,9 @@
 """Plans against rivals, on families of instances that others published: processor seconds, one run, one row a seed.
 
-Run as ``python -m analysis.benchmarks.rivals [--only WORD] [--seconds S] [--seeds K] [--first SEED]``. Rivals are
-HiGHS's scenario program (``scenario_program`` of ``ratt_opt.planners``; its bound is a claim) and the greedy plan with
-exchanges. ``open`` is ``(upper - lower) / upper``; of the p-median rows all ends are costs, and ``open`` is a share of
-the cost of the plan.
+Run as ``python -m analysis.benchmarks.rivals [--only WORD] [--seconds S] [--seeds K] [--first SEED] [--out FILE]``;
+the file is a table (CSV) that gets each row as it comes. Rivals are HiGHS's scenario program (``scenario_program`` of
+``ratt_opt.planners``; its bound is a claim) and the greedy plan with exchanges. ``open`` is
+``(upper - lower) / upper``; of the p-median rows all ends are costs, and ``open`` is a share of the cost of the plan.
 
 - Resilient coverage (Shi, Zhou, Tokekar and others 2021): R robots, each of P paths covers 5 to 15 of T targets, A
   robots are lost.
@@ -15,6 +15,7 @@ the cost of the plan.
 from __future__ import annotations
 
 import argparse
+import csv
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -147,34 +148,74 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seeds", type=int, default=10, help="seeds of each family")
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--without-rivals", action="store_true")
+    parser.add_argument("--out", type=Path, help="CSV that the rows are added to")
     options = parser.parse_args(arguments)
     seeds = range(options.first, options.first + options.seeds)
-    print(f"{'instance':28} {'seed':>4} {'':>10} {'lower':>12} {'upper':>12} {'open':>8} {'seconds':>8}")
+    table = Table(options.out)
     for family in FAMILIES:
         for seed in seeds if options.only in family.name else ():
             case = family.draw(seed)
             if case is not None:
-                compare(
-                    f"{family.name:28} {seed:4}",
-                    case,
-                    family.longer * options.seconds,
-                    rivals=not options.without_rivals,
-                )
+                row = Row(table=table, instance=family.name, seed=seed, most=case.most)
+                compare(row, case, family.longer * options.seconds, rivals=not options.without_rivals)
 
 
-def compare(label: str, case: Case, seconds: float, *, rivals: bool) -> None:
-    """Print the rows of one instance: the library's, then the rivals'."""
+class Table:
+    """Rows that are printed, and added to a CSV file if there is one."""
+
+    titles = ("instance", "seed", "who", "lower", "upper", "open", "seconds")
+
+    def __init__(self, out: Path | None = None) -> None:
+        self._out = out
+        print(f"{'instance':28} {'seed':>4} {'':>10} {'lower':>12} {'upper':>12} {'open':>8} {'seconds':>8}")
+        if out is not None and not out.exists():
+            self._write(self.titles)
+
+    def add(self, row: tuple[str, int, str, float, float, float, float]) -> None:
+        """Add one row, in the order of ``titles``."""
+        instance, seed, who, lower, upper, share, seconds = row
+        numbers = f"{lower:12.6g} {upper:12.6g} {share:8.2%} {seconds:8.1f}"
+        print(f"{instance:28} {seed:4} {who:>10} {numbers}", flush=True)
+        if self._out is not None:
+            self._write(row)
+
+    def _write(self, cells: tuple[object, ...]) -> None:
+        assert self._out is not None
+        with self._out.open("a", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerow(cells)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row:
+    """Row of the brackets of one instance; ``most`` : of its case."""
+
+    table: Table
+    instance: str
+    seed: int
+    most: float | None
+
+    def show(self, who: str, found: RivalBracket) -> None:
+        """Add the bracket of the library or a rival."""
+        lower, upper, most = found.lower, found.upper, self.most
+        least = upper if most is None else most - lower
+        share = (upper - lower) / least if np.isfinite(upper) and least > 0 else np.inf
+        if most is not None:
+            lower, upper = most - upper, most - lower
+        self.table.add((self.instance, self.seed, who, lower, upper, share, found.seconds))
+
+
+def compare(row: Row, case: Case, seconds: float, *, rivals: bool) -> None:
+    """Add the rows of one instance: the library's, then the rivals'."""
     began = time.process_time()
     found = ro.solve_maxmin(case.asked, gap=GAP, time_limit=seconds)
-    show(label, "solve", RivalBracket(lower=found.lower, upper=found.upper, seconds=_since(began)), case.most)
+    row.show("solve", RivalBracket(lower=found.lower, upper=found.upper, seconds=_since(began)))
     if case.rivals is not None and rivals:
         began = time.process_time()
         walk = attacked_exchanges if case.cameras else exchanges
         walked = walk(case.rivals, ro.greedy(case.rivals), seconds)
-        walked = RivalBracket(lower=walked.lower, upper=np.inf, seconds=_since(began))
-        show(label, "exchanges", walked, case.most)
+        row.show("exchanges", RivalBracket(lower=walked.lower, upper=np.inf, seconds=_since(began)))
         program = tangent_milp if case.cameras else scenario_bracket
-        show(label, "HiGHS", program(case.rivals, seconds), case.most)
+        row.show("HiGHS", program(case.rivals, seconds))
 
 
 def scenario_bracket(problem: ro.Problem, seconds: float) -> RivalBracket:
@@ -182,15 +223,6 @@ def scenario_bracket(problem: ro.Problem, seconds: float) -> RivalBracket:
     began = time.process_time()
     found = scenario_program(problem, time_limit=seconds)
     return RivalBracket(lower=found.lower, upper=found.claimed_upper, seconds=_since(began))
-
-
-def show(label: str, who: str, found: RivalBracket, most: float | None) -> None:
-    """Print one row."""
-    lower, upper = found.lower, found.upper
-    share = (upper - lower) / (upper if most is None else most - lower) if upper < np.inf else np.inf
-    if most is not None:
-        lower, upper = most - upper, most - lower
-    print(f"{label} {who:>10} {lower:12.6g} {upper:12.6g} {share:8.2%} {found.seconds:8.1f}", flush=True)
 
 
 def _since(began: float) -> float:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.least_sets.exchanges import weak_sets_of_size
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.params import DEFAULT
 from ratt_opt.budget import Stop
@@ -66,13 +67,23 @@ def forced_group_bound(task: AttackTask, team: Team | None, least: int = 0) -> S
     if size:
         task.bracket.raise_lower(float(np.sort(single)[size - 1]))
     if team is not None and size:
-        search = LeastSetSearch(team, size, task.bracket.upper, task.bracket.lower)
-        for found in search.run(task.budget):
-            if found is not None:
-                search.threshold = min(search.threshold, team.value(found))
-            task.bracket.raise_lower(min(search.lower, search.threshold * (1 - 1e-12)))
-        task.bracket.raise_lower(search.threshold * (1 - 1e-12))
+        with task.budget.stage(task.params.bounds.fewer) as part:
+            for fewer in range(1, size):
+                _bound_by_weakest(task, team, fewer, part)
+        _bound_by_weakest(task, team, size, task.budget)
     return Stop.CLOSED if task.bracket.is_closed else Stop.HEURISTIC
+
+
+def _bound_by_weakest(task: AttackTask, team: Team, size: int, budget: Budget) -> None:
+    """Raise the lower end by the weakest set of robots of one size; raises ``OutOfBudget``."""
+    bracket, depth = task.bracket, task.params.bounds.in_depth
+    weakest = min(map(team.value, weak_sets_of_size(team, size, budget)), default=np.inf)
+    search = LeastSetSearch(team, size, min(weakest, bracket.upper), bracket.lower, in_depth=depth)
+    for found in search.run(budget):
+        if found is not None:
+            search.threshold = min(search.threshold, team.value(found))
+        bracket.raise_lower(min(search.lower, search.threshold * (1 - 1e-12)))
+    bracket.raise_lower(search.threshold * (1 - 1e-12))
 
 
 def _offer_cut(task: AttackTask, single: FloatArray) -> None:

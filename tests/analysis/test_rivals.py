@@ -58,3 +58,18 @@ def test_p_median_files_give_shortest_paths(rivals, tmp_path):
     assert case.most - best.lower == 3  # at the second site
     assert rivals.p_median(1, 0, tmp_path).draw(1) is None
     assert np.array_equal(case.asked.robot, np.zeros(3))
+
+
+def test_rows_are_printed_and_kept_in_a_table(rivals, tmp_path, capsys):
+    out = tmp_path / "rows.csv"
+    for most, upper in ((None, 0.0), (100.0, 40.0), (None, np.inf)):  # a bound of 0 has no share
+        row = rivals.Row(table=rivals.Table(out), instance="team", seed=3, most=most)
+        row.show("solve", rivals.RivalBracket(lower=0.0 if upper == 0.0 else 30.0, upper=upper, seconds=1.0))
+    kept = out.read_text(encoding="utf-8").splitlines()
+    assert kept[0].split(",") == list(rivals.Table.titles)
+    assert kept[1:] == [
+        "team,3,solve,0.0,0.0,inf,1.0",
+        f"team,3,solve,60.0,70.0,{10 / 70},1.0",
+        "team,3,solve,30.0,inf,inf,1.0",
+    ]
+    assert capsys.readouterr().out.count("team") == 3

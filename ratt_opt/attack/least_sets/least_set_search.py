@@ -99,7 +99,7 @@ class LeastSetSearch:
     The caller may lower ``threshold`` at every step of :meth:`run`; sets between are then passed over.
 
     ``floor`` : no set is worth less; ``inside``, ``outside`` : only sets that contain the first and avoid the second
-    ``in_depth`` : partial sets looked at before branch and bound, at most
+    ``in_depth`` : partial sets looked at before branch and bound, in the place of those of the parameters
     """
 
     def __init__(
@@ -143,7 +143,7 @@ class LeastSetSearch:
         """Search in depth without bounds; to the end if there are none."""
         most = next(nodes for robots, nodes in self.team.params.set_search.whole if self.team.robots <= robots)
         most = min(most, self.team.params.set_search.by_axis) if self.team.is_by_axis else most
-        most = most if self._in_depth is None else min(most, self._in_depth)
+        most = most if self._in_depth is None else self._in_depth
         while sets.nodes < most or not self.team.is_planar:
             found = sets.next(self.threshold, sets.nodes + most + 1, budget)
             if found is False:

@@ -76,12 +76,17 @@ class AttackBoundParams:
 
     ``share`` : on sparse graphs. ``short_share``, ``short`` : the same for a short search, up to a number of seconds
     ``largest_weight`` : integer that stands for the largest weight of a robot
+    ``fewer`` : for the weakest sets of fewer robots than the forced size, one more each time: sure sooner, and lower
+    ``in_depth`` : partial sets of a search for the weakest set before branch and bound, some five seconds: with the
+        weakest set known by exchanges, each robot more takes twice as many
     """
 
     share: float = 0.025
     short_share: float = 0.05
     short: float = 0.5
     largest_weight: int = 2**20
+    fewer: float = 0.7
+    in_depth: int = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -183,6 +188,8 @@ class ListedParams:
     ``step`` : relative distance of the first threshold from the attack in hand, once a budget has ended the search
     ``most_within`` : columns within the gap, for covers to be searched
     ``most`` : groups listed at most, 20 bytes each; ``brief`` : in a brief attack. ``share`` : of the remaining seconds
+    ``strongest`` : of the seconds of a threshold, for the limits of the strongest robots; a team whose limits take
+        longer has too many sets that are nearly as weak as the attack in hand
     ``starts`` : annealed attacks before
     """
 
@@ -191,4 +198,5 @@ class ListedParams:
     most: int = 3_000_000
     brief: int = 20_000
     share: float = 0.1
+    strongest: float = 0.25
     starts: int = 4

@@ -37,7 +37,7 @@ class StageParams:
     first_bound: float = 0.05
     first_bound_nodes: int = 20_000
     bound: float = 0.3
-    bound_nodes: int = 500_000
+    bound_nodes: int = 1_000_000
     sizes: float = 0.7
     annealed_values: float = 0.5
     blinded_sets: int = 20_000

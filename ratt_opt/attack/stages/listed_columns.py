@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
 from ratt_opt.attack.thresholds.listed_columns import ListedSearch
+from ratt_opt.attack.thresholds.listed_size import listed_size_of
 from ratt_opt.graph.group_list import LARGEST_MASK, MOST_CUT, groups_of
 
 if TYPE_CHECKING:
     from ratt_opt.attack.params import AttackParams
 
-__all__ = ["ListedColumnsAgainStage", "ListedColumnsStage"]
+__all__ = ["ListedColumnsAgainStage", "ListedColumnsStage", "ListedSizeStage"]
 
 
 class ListedColumnsStage(Stage[AttackState]):
@@ -52,9 +53,32 @@ class ListedColumnsAgainStage(ListedColumnsStage):
     """Stage that goes on with the listed columns once attacks are annealed."""
 
     def applies(self, attack: AttackState) -> bool:
-        """Listed columns possible, limit of time, budget left."""
-        return super().applies(attack) and attack.has_time_limit and attack.has_prices
+        """Listed columns possible, limits soon known, limit of time, budget left."""
+        is_slow = attack.listed is not None and attack.listed.is_slow
+        return super().applies(attack) and attack.has_time_limit and attack.has_prices and not is_slow
 
     def share(self, params: AttackParams) -> Share:
         """Return a part that leaves time for prices."""
         return Share(part=params.stages.listed, max_nodes=params.stages.listed_nodes)
+
+
+class ListedSizeStage(Stage[AttackState]):
+    """Stage that raises the forced size by listed columns of robots that are all alike."""
+
+    name = "listed size"
+
+    def applies(self, attack: AttackState) -> bool:
+        """Groups listed, budget left."""
+        return attack.listed is not None and attack.has_prices
+
+    def share(self, params: AttackParams) -> Share:
+        """Return a part that leaves time for annealing and prices."""
+        return Share(part=params.listed.share, max_nodes=params.stages.listed_nodes)
+
+    def run(self, attack: AttackState) -> None:
+        """Unblinded robots that every attack leaves in some group, by all groups that it may leave."""
+        size = listed_size_of(attack.threat, attack.task.params)
+        try:
+            size.run(groups_of(attack.threat), attack.sure, attack.task.budget)
+        finally:
+            attack.sure = max(attack.sure, size.least)

@@ -26,7 +26,7 @@ from ratt_opt.attack.stages.forced_size import (
     TreeInequalitiesStage,
 )
 from ratt_opt.attack.stages.greedy_steps import GreedyStepsStage
-from ratt_opt.attack.stages.listed_columns import ListedColumnsAgainStage, ListedColumnsStage
+from ratt_opt.attack.stages.listed_columns import ListedColumnsAgainStage, ListedColumnsStage, ListedSizeStage
 from ratt_opt.attack.stages.single_robots import SingleRobotsStage, SingleValuesStage
 from ratt_opt.attack.stages.size_vectors import SizeVectorsStage, SpatialSizeVectorsStage
 
@@ -60,6 +60,7 @@ CRITERION_STAGES: tuple[Stage[AttackState], ...] = (
     GreedyStepsStage(),
     ListedColumnsStage(),
     TreeInequalitiesStage(),
+    ListedSizeStage(),
     ForcedSizeOfOwnCriterionStage(),
     AnnealedOwnCriterionStage(),
     BranchAndBoundOfOwnCriterionStage(),

@@ -48,6 +48,8 @@ class ListedSearch:
         self._begun: dict[float, ListedColumns] = {}
         """Thresholds that are begun."""
         self._was_ended = False
+        self.is_slow = False
+        """Flag that the limits of the strongest robots took longer than their share."""
 
     def run(self) -> Stop:
         """Decide thresholds; an attack that is no worse than the one in hand, or an open threshold, ends the search.
@@ -67,7 +69,10 @@ class ListedSearch:
                 answer = self._begun[threshold].decide(self.task.budget)
             except OutOfBudget:
                 self._was_ended = True
-                raise
+                if self.task.budget.stop() is not None:
+                    raise
+                self.is_slow = True
+                return Stop.HEURISTIC
             if answer.verdict is Threshold.REFUTED:
                 bracket.raise_lower(threshold)
             elif answer.partition is None or not self.task.offer(answer.partition.attack(self.task.problem.threat)):
@@ -88,7 +93,7 @@ class ListedColumns:
         masks, cuts = groups.so_far()
         self._columns = Columns(groups.robots, masks.copy(), cuts.copy(), np.zeros_like(cuts))
         self._cardinality = MaxCardinalityBelow(team, threshold, mask_of(threat.protected_robots))
-        self._is_begun, self._restricted = False, 0
+        self.is_begun, self._restricted = False, 0
         """Flag that the strongest robots have their limits; number of limits that the columns have."""
         self._entered: list[Column] = []
         """Columns of the last program."""
@@ -137,9 +142,9 @@ class ListedColumns:
         ------
         OutOfBudget : the budget is spent; it goes on where it ended.
         """
-        if not self._is_begun:
-            self._cardinality.limit_strongest(budget)
-            self._is_begun = True
+        if not self.is_begun:
+            self._limit_strongest(budget)
+            self.is_begun = True
         while True:
             budget.spend()
             self._restrict()
@@ -149,6 +154,15 @@ class ListedColumns:
             self._entered = bound.columns
             if bound.duals.claim(self._threat.n_blinded) > enough * UNIT or not self._has_limited(bound.used, budget):
                 return bound.duals
+
+    def _limit_strongest(self, budget: Budget) -> None:
+        """Add the limits of the strongest robots; raises ``OutOfBudget``, also once their share of the time is over."""
+        most = None if budget.max_nodes is None else budget.nodes_left(budget.max_nodes)
+        part = budget.part(self._team.params.listed.strongest, max_nodes=most)
+        try:
+            self._cardinality.limit_strongest(part)
+        finally:
+            budget.nodes += part.nodes
 
     def _restrict(self) -> None:
         """Tell the columns the limits that they do not have."""
