@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from analysis.limited_views.bite import BITES
 from analysis.measurements import AGAIN
 from ratt_opt import (
     Problem,
@@ -36,8 +37,6 @@ from tests.documents import ROOT, Block, blocks, documents
 if TYPE_CHECKING:
     from pathlib import Path
 
-BITES = 0.1
-"""Part of a plan's value that an attack must cost to bite (docs/researchers/limited_views_tables.md)."""
 RESULT = re.compile(r"^(?P<expression>[^#\s][^#\n]*?)\s+# (?P<numbers>-?[\d.]+(?:, -?[\d.]+)*)(?: \D*)?$", re.MULTILINE)
 """A line such as ``f(x), g(x)  # 0.25, 3``: what the expression gives, to the digits shown."""
 NUMBER = re.compile(r"(?<![\w.])-?(?:\d{1,3}(?:,\d{3})+|\d+(?:\.\d+)?(?:e-?\d+)?)\b")

@@ -1,4 +1,7 @@
-"""Planners under attackers over missions of cameras that turn, all in the main cell."""
+"""Planners under attackers over missions of cameras that turn: the main cell, then one factor varied at a time.
+
+``python -m analysis.limited_views --trials 60 --out DIR``; ``--only limited_views_main`` flies the main cell alone.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from ratt_opt.missions.run import run_mission
 from ratt_opt.scenario.limited_view import SENSORS, limited_view_scenario
 from ratt_opt.scenario.sensor import Sensor, measure
 from ratt_opt.studies.cases import Case
+from ratt_opt.studies.command import Entry
 from ratt_opt.studies.study import Study
 
 if TYPE_CHECKING:
@@ -22,13 +26,15 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COMPLETE",
+    "ENTRIES",
     "MAIN",
     "METRICS",
     "PLANNERS",
     "STEPS",
+    "STUDIES",
     "UNLIMITED",
+    "VARIED",
     "case_of",
-    "measured",
     "scenario_of",
     "sighted",
 ]
@@ -132,12 +138,36 @@ def _longest_gap(seen: BoolArray) -> int:
     return int(np.diff(edges).max()) - 1
 
 
-MAIN = Study(
-    name="limited_views_main",
-    cases=(case_of(),),
-    planners=PLANNERS,
-    attackers=("worst", "none"),
-    metrics=METRICS,
-    measure=measured,
+def _study(name: str, attackers: tuple[str, ...], cases: tuple[Case, ...]) -> Study:
+    return Study(
+        name=f"limited_views_{name}",
+        cases=cases,
+        planners=PLANNERS,
+        attackers=attackers,
+        metrics=METRICS,
+        measure=measured,
+    )
+
+
+MAIN = _study("main", ("worst", "none"), (case_of(),))
+"""The kind of team that ``bite.py`` chooses."""
+VARIED = _study(
+    "varied",
+    ("worst",),
+    (
+        case_of(view=30),
+        case_of(view=120),
+        case_of(view=360),
+        case_of(reach=30),
+        case_of(reach=UNLIMITED),
+        case_of(links=30),
+        case_of(links=COMPLETE),
+        case_of(n_targets=3),
+        case_of(n_targets=10),
+        case_of(noise="radar"),
+        case_of(noise="coarse"),
+        case_of(attacks="persistent"),
+    ),
 )
-"""The kind of team that the rule of ``docs/researchers/limited_views_tables.md`` chose."""
+STUDIES = (MAIN, VARIED)
+ENTRIES = [Entry(study) for study in STUDIES]
