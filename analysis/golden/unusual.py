@@ -148,7 +148,7 @@ def _edges(rng: np.random.Generator) -> Problem:
 def _large(rng: np.random.Generator) -> Problem:
     """A hundred robots and more on sparse networks and complete graphs."""
     robots = int(rng.choice([100, 150, 200]))
-    budgets = {"alpha_s": float(rng.choice([0.02, 0.1])), "alpha_c": float(rng.choice([0.01, 0.05]))}
+    budgets: dict[str, Any] = {"alpha_s": float(rng.choice([0.02, 0.1])), "alpha_c": float(rng.choice([0.01, 0.05]))}
     family = str(rng.choice(["disk-6", "hubs", "complete"]))
     kind, seed = str(rng.choice(list(CRITERIA))), int(rng.integers(1000))
     if family != "complete":

@@ -6,7 +6,7 @@ it for every ``R``. The concavity of ``phi_j`` comes mostly from the few robots 
 ones are enumerated and get scores of their own.
 
 Slopes and scores are raised by a smoothed ascent (``smoothed_dual.py``). The underestimator's constant is recomputed
-here from all vertices, so nothing depends on the ascent, nor on its end.
+here from all vertices, less what rounding may lose, so nothing depends on the ascent, nor on its end.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ def _recompute(
     trace = family.information[..., 0] + family.information[..., 2]
     share = np.minimum(trace / np.maximum((mean[:, 0] + mean[:, 2])[None], 1e-300), 1.0)  # of a target's information
     return Underestimator(
-        constant=float(constants.sum()),
+        constant=float(constants.sum()) - program.rounding(multipliers),
         scores=shares.sum(axis=0),
         slopes=slopes,
         own=own,

@@ -48,6 +48,22 @@ def test_bounds_lists_and_exchanges_of_sets_of_one_size(name, dimension):
 
 
 @pytest.mark.parametrize("name", ["trace", "logdet"])
+@pytest.mark.parametrize("seed", range(5))
+def test_division_loses_no_set_where_robots_see_few_targets(name, seed):
+    """Multipliers grow without bound there, and what cancels in sums of them is rounding."""
+    rng = np.random.default_rng(seed)
+    prior, information = range_bearing(rng, 9, 8, 1)
+    information[rng.random((9, 8)) < 0.7] = 0.0
+    divided = AttackParams(set_search=SetSearchParams(whole=((10**9, 3),), most=2))
+    team, size = Team.of(OBJECTIVES[name](prior, information), np.arange(9), divided), 4
+    values = {frozenset(one): team.value(one) for one in combinations(range(9), size)}
+    threshold = float(np.quantile(list(values.values()), rng.uniform(0.2, 1)))
+    found = {one for one in LeastSetSearch(team, size, threshold).run(Budget()) if one is not None}
+    near = {s for s, value in values.items() if abs(value - threshold) <= 1e-9 * abs(threshold)}
+    assert found - near == {s for s, value in values.items() if value < threshold} - near
+
+
+@pytest.mark.parametrize("name", ["trace", "logdet"])
 @pytest.mark.parametrize("seed", range(12))
 def test_underestimators_lie_below_every_set(name, seed):
     """Also where robots repeat, see nothing, or see along one line only."""
