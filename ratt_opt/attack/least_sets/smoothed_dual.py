@@ -123,9 +123,9 @@ class DualProgram:
         return least
 
     def rounding(self, multipliers: Multipliers) -> float:
-        """What the bound may lose by rounding; large multipliers, whose terms cancel, make it large.
+        """Return what the bound may lose by rounding; large multipliers, whose terms cancel, make it large.
 
-        A sum of so many terms loses at most their number times an ulp of their sizes; four such sums follow each
+        A sum loses at most the number of its terms times an ulp of their sizes; four such sums follow each
         other: of a vertex, of scores, of robots decided, and of reduced costs.
         """
         slopes = np.abs(multipliers.slopes)
