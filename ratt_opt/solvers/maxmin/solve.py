@@ -85,7 +85,7 @@ def solve_maxmin(
     Parameters
     ----------
     gap : stop when ``upper - lower <= gap * |upper|``
-    time_limit : seconds; the bracket is valid whenever the search stops; 0 returns what is known at once
+    time_limit : seconds; the bracket is valid whenever the search stops; with 0 first plans are compared, no more
     max_nodes : search nodes; with it (and no time limit) the result is reproducible
     progress : called as ``progress(nodes, lower, upper)``
     alpha_cs : sensing attacks that the link attacks are worth, if RATT was asked before
