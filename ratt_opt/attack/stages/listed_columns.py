@@ -53,9 +53,8 @@ class ListedColumnsAgainStage(ListedColumnsStage):
     """Stage that goes on with the listed columns once attacks are annealed."""
 
     def applies(self, attack: AttackState) -> bool:
-        """Listed columns possible, limits soon known, limit of time, budget left."""
-        is_slow = attack.listed is not None and attack.listed.is_slow
-        return super().applies(attack) and attack.has_time_limit and attack.has_prices and not is_slow
+        """Listed columns possible, limit of time, budget left."""
+        return super().applies(attack) and attack.has_time_limit and attack.has_prices
 
     def share(self, params: AttackParams) -> Share:
         """Return a part that leaves time for prices."""

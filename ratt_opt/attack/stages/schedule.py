@@ -66,9 +66,9 @@ CRITERION_STAGES: tuple[Stage[AttackState], ...] = (
     BranchAndBoundOfOwnCriterionStage(),
     ForcedSizeOnDenseGraphsStage(),
     AnnealedAttacksStage(),
-    ListedColumnsAgainStage(),
     PossibleSizesStage(),
     ForcedSizeStage(),
+    ListedColumnsAgainStage(),
     DualPricesStage(),
 )
 """Stages of an attack: criteria of information matrices."""

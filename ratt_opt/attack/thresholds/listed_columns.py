@@ -48,8 +48,6 @@ class ListedSearch:
         self._begun: dict[float, ListedColumns] = {}
         """Thresholds that are begun."""
         self._was_ended = False
-        self.is_slow = False
-        """Flag that the limits of the strongest robots took longer than their share."""
 
     def run(self) -> Stop:
         """Decide thresholds; an attack that is no worse than the one in hand, or an open threshold, ends the search.
@@ -71,7 +69,6 @@ class ListedSearch:
                 self._was_ended = True
                 if self.task.budget.stop() is not None:
                     raise
-                self.is_slow = True
                 return Stop.HEURISTIC
             if answer.verdict is Threshold.REFUTED:
                 bracket.raise_lower(threshold)
