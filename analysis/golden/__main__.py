@@ -45,6 +45,8 @@ def main() -> int:
     names = [(case.part, case.name) for case in cases(options.parts)]
     if options.sample is not None:
         names = sample(names, recorded, options.sample)
+        if not names:
+            parser.error(f"--sample must be the seconds of at least one case, some more; got {options.sample:g}")
     there = read_rows(folder, PARTS)
     for row in in_workers(measured_by_name, [key for key in names if key not in there], options.workers):
         append_csv(folder / f"{row['part']}.csv", row)

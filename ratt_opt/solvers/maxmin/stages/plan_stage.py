@@ -24,7 +24,7 @@ __all__ = ["LowerEnd", "PlanPhase", "PlanShare", "PlanStage", "run_plan_stages"]
 
 
 class PlanPhase(Enum):
-    """PlanPhase at which a stage runs, beside the stages of the upper end."""
+    """Moment at which a stage runs, beside the stages of the upper end."""
 
     BEFORE = "before the upper end"
     BETWEEN = "between its turns"
