@@ -5,17 +5,14 @@ from __future__ import annotations
 from itertools import chain, combinations, islice
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ratt_opt.budget import Stop
-from ratt_opt.graph.communication import mask_of, robots_of
+from ratt_opt.graph.communication import mask_of, membership, robots_of
 from ratt_opt.graph.few_cuts import partitions_by_few_cuts
 from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.base import checked_values
 from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray
     from ratt_opt.attack.task import AttackTask
 
 __all__ = ["enumerate_by_values"]
@@ -43,7 +40,7 @@ def enumerate_by_values(task: AttackTask) -> Stop:
             task.budget.check()
             left = [[group & ~blind for group in masks] for blind in some]
             new = list({group: None for parts in left for group in parts if group not in worth})
-            worth.update(zip(new, checked_values(task.values, _membership(new, task.values.n)).tolist(), strict=True))
+            worth.update(zip(new, checked_values(task.values, membership(new, task.values.n)).tolist(), strict=True))
             for blind, parts in zip(some, left, strict=True):
                 if max(map(worth.__getitem__, parts)) < bracket.upper:
                     task.budget.evaluate(len(parts))  # valued alone: batches may round otherwise
@@ -51,11 +48,3 @@ def enumerate_by_values(task: AttackTask) -> Stop:
                     bracket.offer(Attack(frozenset(robots_of(blind)), cut), value)
     bracket.raise_lower(bracket.upper)
     return Stop.CLOSED
-
-
-def _membership(masks: list[int], n_robots: int) -> BoolArray:
-    """(K, N) of sets by bit mask."""
-    width = (n_robots + 7) // 8
-    packed = np.frombuffer(b"".join(mask.to_bytes(width, "little") for mask in masks), dtype=np.uint8)
-    bits = np.unpackbits(packed.reshape(len(masks), width), axis=1, count=n_robots, bitorder="little")
-    return bits.astype(np.bool_)

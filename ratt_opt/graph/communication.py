@@ -14,7 +14,9 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["CommunicationGraph", "Link", "mask_of", "neighbour_masks", "robots_of"]
+    from ratt_opt._validation import BoolArray
+
+__all__ = ["CommunicationGraph", "Link", "mask_of", "membership", "neighbour_masks", "robots_of"]
 
 Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
@@ -40,6 +42,14 @@ def mask_of(robots: Iterable[int]) -> int:
 def robots_of(mask: int) -> list[int]:
     """Robots of a set by bit mask, ascending."""
     return [i for i in range(mask.bit_length()) if mask >> i & 1]
+
+
+def membership(masks: Sequence[int], count: int) -> BoolArray:
+    """(K, count) of sets by bit mask, the lowest bit first."""
+    width = (count + 7) // 8
+    packed = np.frombuffer(b"".join(mask.to_bytes(width, "little") for mask in masks), dtype=np.uint8)
+    bits = np.unpackbits(packed.reshape(len(masks), width), axis=1, count=count, bitorder="little")
+    return bits.astype(np.bool_)
 
 
 @dataclass(frozen=True, slots=True)

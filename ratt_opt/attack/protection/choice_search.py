@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack import params as parameters
+from ratt_opt.graph.communication import membership
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
 
     from ratt_opt.attack.protection.known_attacks import KnownAttack
     from ratt_opt.budget import Budget
@@ -98,18 +97,11 @@ def _missing(attack: KnownAttack, chosen: int) -> int:
 
 def _most_useful_first(free: int, withstands: Sequence[KnownAttack]) -> Iterator[int]:
     """The candidates of a mask, those first that block most of the worst attacks; the lowest among equals."""
-    size = (free.bit_length() + 7) // 8
-    members = np.flatnonzero(_bits(free, size))
-    useful = np.zeros(8 * size, dtype=np.int64)
-    for attack in withstands[: parameters.DEFAULT.protection.ranked]:
-        useful += _bits(attack.links & free, size)
+    first = withstands[: parameters.DEFAULT.protection.ranked]
+    blocked = membership([free, *(attack.links & free for attack in first)], free.bit_length())
+    members, useful = np.flatnonzero(blocked[0]), blocked[1:].sum(axis=0)
     for k in members[np.argsort(-useful[members], kind="stable")].tolist():
         yield 1 << k
-
-
-def _bits(mask: int, size: int) -> NDArray[np.uint8]:
-    """(8 size,) the bits of a mask of ``size`` bytes, the lowest first."""
-    return np.unpackbits(np.frombuffer(mask.to_bytes(size, "little"), dtype=np.uint8), bitorder="little")
 
 
 def _filled(withstands: Sequence[KnownAttack], chosen: int, left: int) -> int:
