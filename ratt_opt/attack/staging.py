@@ -145,7 +145,7 @@ def recorded(task: AttackTask, name: str) -> Iterator[None]:
             )
 
 
-class AttackNodes(Generic[N, B]):
+class AttackNodes(ABC, Generic[N, B]):
     """Branch and bound over attacks, resumable; the task's bracket, whose lower end rises, is valid whenever it stops.
 
     A tree has open ``nodes``, its ``explore`` bounds one of interest, and its ``branch`` divides it.
@@ -177,13 +177,13 @@ class AttackNodes(Generic[N, B]):
         self.task.budget.spend()
         return self.explore(node)
 
+    @abstractmethod
     def explore(self, node: N) -> B | None:
         """Bound a node and offer its attacks; ``None`` if it holds none of interest."""
-        raise NotImplementedError
 
+    @abstractmethod
     def branch(self, bounded: B) -> Iterable[N]:
         """Return the children of a node."""
-        raise NotImplementedError
 
 
 def go_on(task: AttackTask, search: Resumable) -> Stop:

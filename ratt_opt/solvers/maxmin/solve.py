@@ -220,10 +220,11 @@ def _result(
         known = monotone_bound(problem, Attack() if proved.worst_case is None else proved.worst_case.attack)
         stage, upper, proof = "monotonicity", known.upper, known.proof
     rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
-    if not upper >= lower - ROUNDING * abs(lower) - rounding:
+    width = ROUNDING * abs(lower) + rounding
+    if not upper >= lower - width:
         raise ProofError(f"{stage}: no plan is worth more than {upper:.10g}, but one is worth {lower:.10g} at least")
     upper = max(upper, lower)
-    if upper - lower <= ROUNDING * abs(lower) + rounding:
+    if upper - lower <= width:
         stop = Stop.CLOSED
     elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING) + rounding:
         stop = proved.unproved_stop  # no better plan is left, but this one's worst case is not proved

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from ratt_opt import MaxMinParams
 from ratt_opt.cli import run
 from ratt_opt.solvers.maxmin import params as plan_params
 from ratt_opt.solvers.maxmin.params import AT_LEAST_ONE
+from tests.extremes import places, undocumented, value_at, with_one
 from tests.solvers.maxmin.engine import NO_PLANS_LISTED
 from tests.ways import go
 
@@ -38,14 +39,21 @@ def extreme(value: Any, *, least: bool) -> Any:
     return type(value)(0 if least else 20 * value + 1)
 
 
-def places() -> list[str]:
-    return [f"{family.name}.{one.name}" for family in fields(MaxMinParams) for one in fields(family.default_factory)]
+PLACES = places(MaxMinParams())
 
 
-def with_one(place: str, value: Any) -> MaxMinParams:
-    family, name = place.split(".")
-    default = MaxMinParams()
-    return replace(default, **{family: replace(getattr(default, family), **{name: value})})
+def check_at_extremes(place: str, problem: ro.Problem, best: float, **limits: Any) -> None:
+    """Whatever one parameter is, the search ends and its bracket holds the best plan of all."""
+    value = value_at(MaxMinParams(), place)
+    for least in (True, False):
+        try:
+            params = with_one(MaxMinParams(), place, extreme(value, least=least))
+        except ro.InputError:
+            assert place in AT_LEAST_ONE
+            continue
+        found = ro.solve_maxmin(problem, params=params, **limits)
+        assert found.lower <= best * (1 + 1e-9)
+        assert found.upper >= best * (1 - 1e-9)
 
 
 def test_every_family_is_a_frozen_class_whose_fields_are_documented() -> None:
@@ -53,26 +61,12 @@ def test_every_family_is_a_frozen_class_whose_fields_are_documented() -> None:
         kind = family.default_factory
         assert is_dataclass(kind)
         assert kind.__dataclass_params__.frozen  # type: ignore[attr-defined]
-        documented = kind.__doc__ or ""
-        missing = [one.name for one in fields(kind) if f"``{one.name}``" not in documented]
-        assert not missing, f"{kind.__name__} does not say what {missing} are"
+    assert not undocumented(MaxMinParams())
 
 
-@pytest.mark.parametrize("place", places())
+@pytest.mark.parametrize("place", PLACES)
 def test_no_parameter_changes_what_is_claimed(place: str) -> None:
-    """Whatever one parameter is, the search ends and its bracket holds the best plan of all."""
-    problem, best = team(), best_value()
-    family, name = place.split(".")
-    value = getattr(getattr(MaxMinParams(), family), name)
-    for least in (True, False):
-        try:
-            params = with_one(place, extreme(value, least=least))
-        except ro.InputError:
-            assert place in AT_LEAST_ONE
-            continue
-        found = ro.solve_maxmin(problem, params=params, max_nodes=4, time_limit=0.5)
-        assert found.lower <= best * (1 + 1e-9)
-        assert found.upper >= best * (1 - 1e-9)
+    check_at_extremes(place, team(), best_value(), max_nodes=4, time_limit=0.5)
 
 
 BY_VALUES = {"value_checks", "first_plans", "value_walk", "value_turns", "part_rows", "row_tree"}
@@ -86,27 +80,17 @@ def own_team() -> tuple[ro.Problem, float]:
     return problem, ro.exhaustive_optimum(problem).lower
 
 
-@pytest.mark.parametrize("place", [place for place in places() if place.split(".")[0] in BY_VALUES])
+@pytest.mark.parametrize("place", [place for place in PLACES if place.split(".")[0] in BY_VALUES])
 def test_no_parameter_changes_what_is_claimed_of_functions_by_values(
     place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     problem, best = own_team()
     go(monkeypatch, NO_PLANS_LISTED)
-    family, name = place.split(".")
-    value = getattr(getattr(MaxMinParams(), family), name)
-    for least in (True, False):
-        try:
-            params = with_one(place, extreme(value, least=least))
-        except ro.InputError:
-            assert place in AT_LEAST_ONE
-            continue
-        found = ro.solve_maxmin(problem, params=params, max_nodes=2, time_limit=0.1)
-        assert found.lower <= best * (1 + 1e-9)
-        assert found.upper >= best * (1 - 1e-9)
+    check_at_extremes(place, problem, best, max_nodes=2, time_limit=0.1)
 
 
 def test_parameters_that_are_passed_are_used(monkeypatch: pytest.MonkeyPatch) -> None:
-    few = with_one("outcomes.robots", 0)
+    few = with_one(MaxMinParams(), "outcomes.robots", 0)
     listed: list[int] = []
     plain = ro.solvers.maxmin.outcome_pool.OutcomePool.list_all
 
@@ -123,12 +107,12 @@ def test_parameters_that_are_passed_are_used(monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize(("place", "value"), [("walk.back", 0), ("levels.runs", 0), ("restarts.growth", 0.5)])
 def test_what_a_search_cannot_go_on_with_is_refused(place: str, value: float) -> None:
     with pytest.raises(ro.InputError, match=rf"params.{place} must be at least 1; got {value}"):
-        with_one(place, value)
+        with_one(MaxMinParams(), place, value)
 
 
 def test_a_search_without_the_level_of_the_best_plan_is_refused() -> None:
     with pytest.raises(ro.InputError, match="must hold 0"):
-        with_one("levels.shares", ())
+        with_one(MaxMinParams(), "levels.shares", ())
 
 
 def test_a_file_of_toml_changes_some(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -149,6 +133,6 @@ def test_a_file_of_toml_changes_some(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 def test_the_values_of_a_plan_do_not_depend_on_parameters() -> None:
     problem = team(1)
-    found = ro.solve_maxmin(problem, params=with_one("walk.back", 3))
+    found = ro.solve_maxmin(problem, params=with_one(MaxMinParams(), "walk.back", 3))
     assert np.array_equal(found.elements, problem.check_plan(found.elements))
     assert found.stop is ro.Stop.CLOSED
