@@ -122,13 +122,33 @@ class CriterionParts(SetFunction):
     is_least_of_targets: ClassVar[bool] = False
     """True if the value is that of the target where it is least, as with the worst target's criterion."""
 
+    states_again: ClassVar[type[CriterionParts] | None] = None
+    """The criterion of the library whose formula a subclass states again, as one that counts its values does."""
+
     def __init_subclass__(cls) -> None:
-        """Refuse another formula below a criterion of the library: tangents and other parts would still be its own."""
+        """Note a subclass of a criterion with parts of the formula of its own; they must be those of the criterion."""
         super().__init_subclass__()
         below: type[Any] | None = cls.__base__
         if FORMULA & set(vars(cls)) and below is not None and getattr(below, "name", None):
-            rule = "must subclass InformationObjective, as it has another formula than the class below it"
-            raise InputError(cls.__name__, rule, below.__name__)
+            cls.states_again = below.states_again or below
+
+    def check_formula(self) -> None:
+        """Check a subclass of a criterion against it: for no element, half of every element, and all elements.
+
+        Tangents and all other parts are inherited and would be false for another formula.
+
+        Raises ``InputError`` : the formula is another one.
+        """
+        below = self.states_again
+        if below is None:
+            return
+        everything = self.information.sum(axis=0)
+        points = np.stack([self.prior_information + share * everything for share in (0.0, 0.5, 1.0)])
+        for part in sorted(FORMULA):
+            own, inherited = getattr(self, part), getattr(below, part)
+            if not all(np.array_equal(own(point), inherited(self, point)) for point in points):
+                rule = "must subclass InformationObjective, as it has another formula than the class below it"
+                raise InputError(type(self).__name__, rule, below.__name__)
 
     @classmethod
     def overrides(cls, part: str) -> bool:

@@ -106,6 +106,7 @@ class InformationObjective(CriterionParts):
         self._singletons: FloatArray | None = None
         self._inverse_error: FloatArray | None = None
         self._negative_parts: FloatArray | None = None
+        self.check_formula()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.n} elements, {self.n_targets} targets, d = {self.dimension})"

@@ -97,10 +97,35 @@ def test_parts_are_inherited_with_the_formula_they_belong_to_and_another_formula
 
     assert Renamed.overrides("marginal_minorant")
     assert Renamed.target_tangents is ro.LogDetObjective.target_tangents
+    data = information_data(np.random.default_rng(54), 3, 2)
     for part in ("criterion", "value", "gradient"):
         for base in (*CRITERIA.values(), Renamed):
+
+            def capped(self, posterior_information, part=part, base=base):
+                found = getattr(base, part)(self, posterior_information)
+                return np.minimum(found, 0.9 * getattr(base, part)(self, self.posterior_information(np.arange(3))))
+
             with pytest.raises(ro.InputError, match="Other must subclass InformationObjective"):
-                type("Other", (base,), {part: lambda self, posterior_information: 2.0})  # noqa: ARG005
+                type("Other", (base,), {part: capped})(*data)
+
+
+@pytest.mark.parametrize("criterion", CRITERIA.values())
+def test_a_subclass_that_counts_its_values_is_the_criterion_below_it(criterion):
+    asked = []
+
+    class Counted(criterion):
+        def value(self, posterior_information):
+            asked.append(len(posterior_information))
+            return super().value(posterior_information)
+
+    class Again(Counted):
+        def gradient(self, posterior_information):
+            return super().gradient(posterior_information)
+
+    data, owners = information_data(np.random.default_rng(56), 6, 2), np.arange(6) // 2
+    plain, counted = (ro.Problem(kind(*data), owners, None, 1, 1) for kind in (criterion, Again))
+    assert asked
+    assert ro.solve_maxmin(counted).lower == ro.solve_maxmin(plain).lower
 
 
 def test_what_is_missing_is_refused_by_its_name():
