@@ -7,7 +7,6 @@ bound is then the concave envelope.
 
 from __future__ import annotations
 
-from math import comb
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -81,28 +80,6 @@ class BestElements(SumFunction):
         reached = np.cumsum(share[order]) >= 1.0
         level = float(u[order[int(reached.argmax())]]) if reached.any() else 0.0
         return Overestimator(level, rounded_up(u - level))
-
-    def mean_overestimator(self, part: int, share: FloatArray, robots: int, lost: int) -> Overestimator:
-        """The concave envelope, at a point (k,), of the mean value of a plan of ``robots`` elements after losses.
-
-        Each set of ``lost`` robots is lost alike. The best element is left with probability ``w_1``, the second best
-        is the best one left with ``w_2``, and so on: ``w_k = C(robots - k, lost - k + 1) / C(robots, lost)``. So the
-        mean is a sum of ``w_k - w_(k+1)`` times the ``k`` largest utilities, and for any level ``p`` these add up to at
-        most ``k p + sum of (u_e - p)^+``. That level is best at which the shares of better elements add up to ``k``.
-
-        Source: expected costs of facilities that fail (Snyder and Daskin 2005).
-        """
-        u = self._of_part(part)
-        order = np.argsort(-u, kind="stable")
-        reached, falling = np.cumsum(share[order]), np.append(u[order], 0.0)
-        weights = [comb(robots - k, lost - k + 1) / comb(robots, lost) for k in range(1, min(lost + 1, robots) + 1)]
-        constant, gains = 0.0, np.zeros(len(u))
-        for k, drop in enumerate(-np.diff([*weights, 0.0]), start=1):
-            level = float(falling[np.searchsorted(reached, k)])
-            constant += float(drop) * k * level
-            gains += drop * np.maximum(u - level, 0.0)
-        slack = 8 * (lost + 2) * np.finfo(np.float64).eps
-        return Overestimator(constant * (1 + slack), gains * (1 + slack))
 
     def items(self) -> Iterator[tuple[BoolArray, float]]:
         """Items whose coverage the function is: the elements (n,) that cover one, and its weight.

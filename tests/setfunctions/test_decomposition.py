@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 from fractions import Fraction
-from itertools import combinations, combinations_with_replacement, product
+from itertools import product
 
 import numpy as np
 import pytest
@@ -155,26 +155,6 @@ def test_overestimators_of_maxima_hold_in_exact_arithmetic():
         for members in subsets(5):
             best = max((Fraction(u) for u in f.utility[members, 0]), default=Fraction(0))
             assert Fraction(bound.constant) + sum(map(Fraction, bound.gains[members])) >= best
-
-
-@pytest.mark.parametrize(("robots", "lost"), [(4, 0), (4, 1), (5, 2), (4, 3), (3, 3)])
-def test_mean_values_after_losses_are_bounded_for_every_plan(robots, lost):
-    """By definition: each plan of some robots, elements chosen twice too, and each set of robots that may be lost."""
-    rng = np.random.default_rng([robots, lost])
-    f = ro.FacilityLocation(np.round(rng.random((5, 2)), 1))
-    plans = list(combinations_with_replacement(range(5), robots))
-    for part in range(2):
-        touching = f.touching(part)
-        utility = f.utility[:, part]
-        counts = np.array([[plan.count(e) for e in touching] for plan in plans], dtype=float)
-        left = [[utility[list(some)].max(initial=0.0) for some in combinations(plan, robots - lost)] for plan in plans]
-        means = np.array(left).mean(axis=1)
-        for share in (*counts[::7], *(rng.random((6, len(touching))) * 2)):
-            bound = f.mean_overestimator(part, share, robots, lost)
-            assert (bound.gains >= 0).all()
-            assert (bound.constant + counts @ bound.gains - means).min() >= -1e-15
-        for plan, mean in zip(counts, means, strict=True):
-            assert f.mean_overestimator(part, plan, robots, lost).at(plan) == pytest.approx(mean)
 
 
 def envelope(values, sets, share):

@@ -2,31 +2,42 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from ratt_opt._validation import FloatArray, IntArray
+    from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.decomposition import Decomposition
 
-__all__ = ["PlanColumns", "PlanNode"]
+__all__ = ["WHOLE", "PlanColumns", "PlanNode", "Region"]
 
 WHOLE = 1e-6
 """Distance from a whole number up to which a number of robots counts as whole."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Region:
+    """Columns (columns,) of which at most ``most`` robots choose one, or of which more do."""
+
+    columns: BoolArray
+    most: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class PlanNode:
     """Plans of which at least ``lower`` and at most ``upper`` (columns,) robots choose elements of each column.
 
-    ``is_first`` : nothing is decided but that robots choose different columns, at most; what follows inherits its rows
+    ``within``, ``beyond`` : regions in which at most their number of robots choose, and in which more do
+    ``is_first`` : nothing is decided; what follows inherits its rows
     """
 
     lower: FloatArray
     upper: FloatArray
+    within: tuple[Region, ...] = ()
+    beyond: tuple[Region, ...] = ()
     is_first: bool = False
 
 
@@ -34,12 +45,13 @@ class PlanColumns:
     """Elements that the linear program need not tell apart: equal ones of robots with equal choices.
 
     ``column`` : (E,) of each element; ``kind`` : (N,) class of each robot, and ``kinds`` : (columns,) theirs
-    ``count`` : (columns,) elements of each; ``sizes`` : (kinds,) robots; ``of_kind`` : columns of each kind
+    ``sizes`` : (kinds,) robots; ``of_kind`` : columns of each kind
     ``limit`` : on how many robots are busy; columns are the elements then
 
     Parameters
     ----------
-    merges : whether robots may be exchanged, as any of them may be blinded alike; otherwise each has its own columns
+    merges : whether robots may be exchanged, as any of them may be blinded alike; otherwise, and if no two have equal
+        choices, the columns are the elements
     """
 
     def __init__(self, problem: Problem, parts: Decomposition, *, merges: bool) -> None:
@@ -55,29 +67,16 @@ class PlanColumns:
             known: dict[bytes, int] = {}
             for i, choice in enumerate(problem.choices):
                 self.kind[i] = known.setdefault(np.sort(looks[choice]).tobytes(), len(known))
+            if len(known) == problem.n_robots:
+                looks = np.arange(n)
         pairs = np.stack([looks, self.kind[owner]])
         first, self.column = np.unique(pairs, axis=1, return_index=True, return_inverse=True)[1:]
         self.column = self.column.ravel()
         self.kinds = self.kind[owner[first]]
         self.sizes = np.bincount(self.kind).astype(np.float64)
-        self.count = np.bincount(self.column)
         self.of_kind = tuple(np.flatnonzero(self.kinds == kind) for kind in range(len(self.sizes)))
         self.merges = bool((self.sizes > 1).any())
         self._choices = problem.choices
-        self._order = np.argsort(self.column, kind="stable")
-        self._starts = np.cumsum(np.append(0, self.count[:-1]))
-
-    def share(self, point: FloatArray) -> FloatArray:
-        """(E,) a fractional plan of the columns' (columns,), even among elements."""
-        return np.asarray((point / self.count)[self.column])
-
-    def mean(self, values: FloatArray) -> FloatArray:
-        """(columns,) means over each column's elements of (E,) values."""
-        return np.asarray(np.bincount(self.column, values, len(self.count)) / self.count)
-
-    def mean_of_robots(self, left: FloatArray) -> FloatArray:
-        """(N,) the mean over all permutations of robots that the columns do not tell apart."""
-        return np.asarray((np.bincount(self.kind, left) / self.sizes)[self.kind])
 
     def root(self) -> PlanNode:
         """All plans."""
@@ -100,31 +99,26 @@ class PlanColumns:
         return np.asarray(np.where(total > 0, scaled, otherwise * sizes / np.maximum(other, WHOLE)))
 
     def largest(self, gains: FloatArray, node: PlanNode) -> float:
-        """The largest sum of gains (E,), at least 0, over the plans of a node; minus infinity if there is none."""
+        """The largest sum of gains (columns,) over the plans of a node; minus infinity if there is none."""
         if self.limit is not None:
             plan = self.limit.best_plan(gains, [own[node.upper[own] > 0] for own in self.of_kind])
             return -np.inf if plan is None else float(gains[plan].sum())
-        best = np.maximum.reduceat(gains[self._order], self._starts)
-        total = float(best @ node.lower)
-        free = np.where(node.upper > node.lower, best, -np.inf)
+        total = float(gains @ node.lower)
+        free = np.where(node.upper > node.lower, gains, -np.inf)
         for kind, own in enumerate(self.of_kind):
             rest = self.sizes[kind] - node.lower[own].sum()
             for column in own[np.argsort(-free[own], kind="stable")].tolist() if rest > 0 else ():
                 taken = min(rest, node.upper[column] - node.lower[column])
-                total, rest = total + taken * float(best[column]), rest - taken
+                total, rest = total + taken * float(gains[column]), rest - taken
                 if rest <= 0:
                     break
         return total
 
-    def children(self, node: PlanNode, point: FloatArray, *, apart: bool = False) -> list[PlanNode]:
+    def children(self, node: PlanNode, point: FloatArray) -> list[PlanNode]:
         """Divide a node at a fractional plan: into all elements of a robot, or by how many robots choose a column.
 
-        None if it is one plan, up to exchanges of equal elements. ``apart`` : whether plans in which no two robots
-        choose a column come first, and all others by a column that two do
+        None if it is one plan, up to exchanges of equal elements.
         """
-        shared = np.flatnonzero((node.upper > 1) & (node.lower < 2)) if apart else np.array([], dtype=np.int64)
-        if len(shared):
-            return [child for child in self._apart(node, shared) if self._has_plans(child)]
         open_kinds = [k for k, own in enumerate(self.of_kind) if self._is_open(node, k, own)]
         if not open_kinds:
             return []
@@ -134,17 +128,6 @@ class PlanColumns:
             return [self._only(node, own, column) for column in own[node.upper[own] > 0].tolist()]
         return self._by_number(node, point, np.concatenate([self.of_kind[k] for k in open_kinds]))
 
-    @staticmethod
-    def _apart(node: PlanNode, shared: IntArray) -> list[PlanNode]:
-        upper = node.upper.copy()
-        upper[shared] = 1.0
-        children = [PlanNode(node.lower, upper, is_first=node.is_first)]
-        for column in shared.tolist():
-            lower = node.lower.copy()
-            lower[column] = 2.0
-            children.append(PlanNode(lower, node.upper))
-        return children
-
     def _is_open(self, node: PlanNode, kind: int, own: IntArray) -> bool:
         return bool(node.lower[own].sum() < self.sizes[kind] and (node.upper[own] > node.lower[own]).sum() > 1)
 
@@ -153,7 +136,7 @@ class PlanColumns:
         upper = node.upper.copy()
         upper[own] = 0.0
         upper[column] = node.upper[column]
-        return PlanNode(node.lower, upper)
+        return replace(node, upper=upper, is_first=False)
 
     def _by_number(self, node: PlanNode, point: FloatArray, own: IntArray) -> list[PlanNode]:
         """Divide by how many robots choose the column whose number is least whole, else largest."""
@@ -167,7 +150,7 @@ class PlanColumns:
         )
         fewer, more = node.upper.copy(), node.lower.copy()
         fewer[column], more[column] = most, most + 1
-        children = [PlanNode(node.lower, fewer), PlanNode(more, node.upper)]
+        children = [replace(node, upper=fewer, is_first=False), replace(node, lower=more, is_first=False)]
         return [child for child in children if self._has_plans(child)]
 
     def _has_plans(self, node: PlanNode) -> bool:

@@ -8,7 +8,6 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ratt_opt.problem import Attack, Problem
-    from ratt_opt.solvers.by_values.columns import PlanColumns
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
     from ratt_opt.solvers.by_values.plan_tree import Pooled
 
@@ -27,9 +26,9 @@ class OutcomeRows:
     ``pooled`` : bounds what a group is worth under any plan; ``None`` if every attack leaves one group
     """
 
-    def __init__(self, known: PlanAttacks, columns: PlanColumns, pooled: Pooled | None) -> None:
-        self._known, self._columns, self._pooled = known, columns, pooled
-        self.left = np.zeros((0, len(columns.kind)))
+    def __init__(self, problem: Problem, known: PlanAttacks, pooled: Pooled | None) -> None:
+        self._known, self._pooled = known, pooled
+        self.left = np.zeros((0, problem.n_robots))
         self.attacks: list[Attack] = []
         self._taken = 0
         self._caps: dict[frozenset[int], float] = {}
@@ -47,10 +46,9 @@ class OutcomeRows:
         self._taken = len(known)
 
     def _add(self, attack: Attack, groups: list[frozenset[int]]) -> None:
-        """Add the robots of all groups that may be worth more than the best plan known; of columns, the mean."""
-        left = np.zeros(len(self._columns.kind))
+        """Add the robots of all groups that may be worth more than the best plan known."""
+        left = np.zeros(self.left.shape[1])
         left[[i for group in groups if self._may_win(group) for i in group]] = 1.0
-        left = self._columns.mean_of_robots(left)
         if not any(np.array_equal(left, one) for one in self.left):
             self.left = np.concatenate([self.left, left[None]])
             self.attacks.append(attack)

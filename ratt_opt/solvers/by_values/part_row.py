@@ -10,40 +10,45 @@ from ratt_opt.bounds.cuts import ROUNDING
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
+    from ratt_opt.solvers.by_values.columns import Region
 
-__all__ = ["SUM", "CombinedRow", "PartRow", "combine", "down_to_multiple"]
+__all__ = ["NUMBER", "SUM", "CombinedRow", "PartRow", "combine", "down_to_multiple"]
 
-SUM, WHOLE = -1, -2
-"""Numbers in the place of a part's: of the row that adds up the values of all parts, and of rows that bound the sum."""
+SUM, WHOLE, NUMBER = -1, -2, -3
+"""Numbers in the place of a part's: of the row that adds up the values of all parts, of rows that bound the sum, and of
+rows that state how many robots choose in a region."""
 
 
 class PartRow(NamedTuple):
-    """``value <= constant + sum of scores``, if at most one robot chooses each of the columns ``wiped``.
+    """``value <= constant + sum of scores``, if no more robots than they say choose in the ``regions``.
 
-    ``scores`` : (E,); ``part`` : whose value it bounds under the mean outcome, or ``SUM`` or ``WHOLE``
+    ``scores`` : of the elements, or of the columns; ``part`` : whose value it bounds in the mean of all losses, or
+        ``SUM``, ``WHOLE``, or ``NUMBER`` if ``0`` takes the place of the value
     """
 
     constant: float
     scores: FloatArray
-    wiped: tuple[int, ...] = ()
+    regions: tuple[Region, ...] = ()
     part: int = WHOLE
 
 
 class CombinedRow(NamedTuple):
-    """``value <= constant + sum of scores`` (E,); ``size`` : of the constants that were added up."""
+    """``value <= constant + sum of scores``; ``size`` : of the constants that were added up."""
 
     constant: float
     scores: FloatArray
     size: float
 
 
-def combine(rows: list[PartRow], duals: FloatArray, n_parts: int) -> CombinedRow | None:
+def combine(rows: list[PartRow], duals: FloatArray, n_parts: int = 0) -> CombinedRow | None:
     """Combine rows in proportion to some duals; ``None`` if these bound nothing.
 
-    Multipliers of each part add up to that of the sum; that one and those of whole rows add up to 1.
+    Multipliers of each part add up to that of the sum; that one and those of whole rows add up to 1. Numbers of robots
+    may have any.
     """
     part = np.array([row.part for row in rows], dtype=np.int64)
-    whole, added = float(duals[part < 0].sum()), float(duals[part == SUM].sum())
+    added = float(duals[part == SUM].sum())
+    whole = added + float(duals[part == WHOLE].sum())
     if whole <= 0:
         return None
     weights, own = duals / whole, part >= 0

@@ -81,6 +81,14 @@ class PlanAttacks:
             raise OutOfBudget(result.stop)
         return result
 
+    def attack_if_better(self, elements: IntArray) -> None:
+        """Attack a plan if the known attacks leave more of it than of the best one."""
+        groups = list(self.known.values())
+        sets = [elements[sorted(group)].tolist() for parts in groups for group in parts]
+        flat = iter(self.problem.objective.values_of(sets).tolist())
+        if min(max(next(flat) for _ in parts) for parts in groups) > self.lower:
+            self.attack(elements)
+
     def learn(self, elements: IntArray, lower: float) -> None:
         """Keep a plan of which another search proved more."""
         if lower > self.lower:

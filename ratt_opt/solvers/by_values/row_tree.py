@@ -1,7 +1,7 @@
 """Best plans of sums of parts and of submodular functions by branch and bound: ``part_rows.py`` bounds each node.
 
-A node is divided into all elements of one robot. If robots may be exchanged, it is divided by how many of them choose
-elements of one column: first into plans in which no two do, and those in which some two share a column.
+A node is divided into all elements of one robot. If robots may be exchanged (``region_rows.py``), it is divided by how
+many of them choose elements of a region or of one column.
 """
 
 from __future__ import annotations
@@ -11,8 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.budget import OutOfBudget, Stop
+from ratt_opt.setfunctions.best_elements import BestElements
+from ratt_opt.solvers.by_values.columns import PlanColumns
 from ratt_opt.solvers.by_values.divided_plans import DividedPlans
+from ratt_opt.solvers.by_values.outcome_rows import blinds_alone
 from ratt_opt.solvers.by_values.part_rows import PartRows
+from ratt_opt.solvers.by_values.region_rows import RegionRows
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -44,8 +48,15 @@ class RowTree(DividedPlans["PlanNode"]):
     ) -> None:
         upper, budget = known
         self._problem, self._params = problem, params.row_tree
-        self._rows = PartRows(problem, parts, attacks, single, budget, params)
-        self._columns = self._rows.columns
+        f, may_merge = problem.objective, blinds_alone(problem) and not problem.threat.protected_robots
+        # Elements of equal utilities may be exchanged: what they are worth depends on nothing else.
+        best_elements = f if may_merge and isinstance(f, BestElements) else None
+        self._columns = columns = PlanColumns(problem, parts, merges=best_elements is not None)
+        self._rows: PartRows | RegionRows
+        if best_elements is not None and columns.merges:
+            self._rows = RegionRows(problem, best_elements, columns, attacks, params)
+        else:
+            self._rows = PartRows(problem, parts, columns, attacks, single, budget, params)
         super().__init__(self._columns.root(), upper, attacks)
         self._point = self._columns.middle_of(self._columns.root())
 
@@ -63,7 +74,7 @@ class RowTree(DividedPlans["PlanNode"]):
         bound = self._bounded(plans, bound, budget)
         if bound <= self._attacks.lower:
             return []
-        children = self._columns.children(plans, self._point, apart=self._problem.threat.n_blinded > 0)
+        children = self._rows.children(plans, self._point, bound)
         if not children:
             self._attack(plans, bound, budget)
         return [(bound, child) for child in children]

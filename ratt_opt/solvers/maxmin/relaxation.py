@@ -58,7 +58,7 @@ class NodeProgram:
     solve starts from the last basis. Only the multipliers are used; every bound is derived from them anew.
 
     ``choices`` : columns of each robot, or of each class of robots, of ``sizes`` robots each
-    ``levels`` : further columns, at least 0, which rows may bound in the place of ``t``
+    ``levels`` : what further columns add to the maximum, which rows may bound in the place of ``t``
     """
 
     def __init__(
@@ -67,14 +67,16 @@ class NodeProgram:
         choices: Choices,
         limit: ChoiceLimit | None = None,
         sizes: FloatArray | None = None,
-        levels: int = 0,
+        levels: FloatArray | None = None,
     ) -> None:
-        self._n, self._first_cut = n_elements + levels, len(choices) + (limit is not None)
+        levels = np.zeros(0) if levels is None else levels
+        self._n, self._first_cut = n_elements + len(levels), len(choices) + (limit is not None)
         sizes = np.ones(len(choices)) if sizes is None else sizes
-        zeros = np.zeros(n_elements + levels)
-        most = np.append(np.full(n_elements, float(sizes.max())), np.full(levels, np.inf))
+        zeros = np.zeros(self._n)
+        most = np.append(np.full(n_elements, float(sizes.max())), np.full(len(levels), np.inf))
         owners = rows_of([(choice.tolist(), [1.0] * len(choice)) for choice in choices], sizes, sizes)
-        cost, lower, upper = np.append(zeros, 1.0), np.append(zeros, -np.inf), np.append(most, np.inf)
+        cost = np.concatenate([np.zeros(n_elements), levels, [1.0]])
+        lower, upper = np.append(zeros, -np.inf), np.append(most, np.inf)
         self._most = most
         self._program = LinearProgram(cost, lower, upper, rows=owners, maximise=True, solver="simplex")
         if limit is not None:

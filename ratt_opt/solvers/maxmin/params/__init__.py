@@ -36,6 +36,7 @@ from ratt_opt.solvers.maxmin.params.trees import (
 from ratt_opt.solvers.maxmin.params.values import (
     FirstPlanParams,
     PartRowParams,
+    RegionParams,
     RowTreeParams,
     ValueCheckParams,
     ValueTurnParams,
@@ -60,6 +61,7 @@ __all__ = [
     "MaxMinParams",
     "OutcomeListParams",
     "PartRowParams",
+    "RegionParams",
     "RestartParams",
     "RowParams",
     "RowTreeParams",
@@ -112,6 +114,7 @@ class MaxMinParams:
     value_walk: ValueWalkParams = field(default_factory=ValueWalkParams)
     value_turns: ValueTurnParams = field(default_factory=ValueTurnParams)
     part_rows: PartRowParams = field(default_factory=PartRowParams)
+    regions: RegionParams = field(default_factory=RegionParams)
     row_tree: RowTreeParams = field(default_factory=RowTreeParams)
 
     def __post_init__(self) -> None:

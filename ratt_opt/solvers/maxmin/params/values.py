@@ -7,6 +7,7 @@ from dataclasses import dataclass
 __all__ = [
     "FirstPlanParams",
     "PartRowParams",
+    "RegionParams",
     "RowTreeParams",
     "ValueCheckParams",
     "ValueTurnParams",
@@ -106,6 +107,22 @@ class PartRowParams:
     tolerance: float = 1e-9
     deep: float = 0.1
     patience: int = 8
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RegionParams:
+    """Choice of the regions by which plans of robots that may be exchanged are divided.
+
+    ``single`` : share of a robot from which a column counts as a region of its own: rows against their time
+    ``beyond`` : worth of a robot too many in a region, as a share of what is open: plans that have to move
+    ``least`` : promise of a region, as a share of what is open; below it a node is divided by one column
+    ``block`` : numbers computed at once while regions are compared: some megabytes each
+    """
+
+    single: float = 0.5
+    beyond: float = 0.3
+    least: float = 1e-4
+    block: int = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
