@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from ratt_opt import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterator
 
 
 def places(params: Any, prefix: str = "") -> list[str]:
@@ -36,6 +41,17 @@ def extreme(value: Any, *, least: bool) -> Any:
     if isinstance(value, (bool, str)):
         return value
     return type(value)(0 if least else 20 * value + 1)
+
+
+def at_extremes(params: Any, place: str, refused: Container[str] = ()) -> Iterator[tuple[bool, Any]]:
+    """The parameters with one number at each end, and whether it is the least; some places may be refused."""
+    for least in (True, False):
+        try:
+            changed = with_one(params, place, extreme(value_at(params, place), least=least))
+        except InputError:
+            assert place in refused
+        else:
+            yield least, changed
 
 
 def undocumented(params: Any) -> list[str]:

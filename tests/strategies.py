@@ -40,6 +40,18 @@ class OwnTrace(InformationObjective):
         return self.weights[:, None, None] * (covariance @ covariance)
 
 
+class SquaredVariances(InformationObjective):
+    """``sum_j w_j tr(P_j^2)``, which no file of the library knows; convex in ``L = P^{-1}`` as ``x^{-2}`` is."""
+
+    def criterion(self, posterior_information):
+        covariance = np.linalg.inv(posterior_information)
+        return self.weights * np.trace(covariance @ covariance, axis1=-2, axis2=-1)
+
+    def gradient(self, posterior_information):
+        covariance = np.linalg.inv(posterior_information)
+        return 2 * self.weights[:, None, None] * (covariance @ covariance @ covariance)
+
+
 def information_data(rng, n_elements, n_targets, dimension=2):
     """Random priors (M, d, d) and positive semidefinite information (E, M, d, d), some of it rank one or zero."""
     root = rng.normal(size=(n_targets, dimension, dimension))

@@ -8,6 +8,7 @@ import sys
 import pytest
 
 import ratt_opt
+from tests.extremes import undocumented
 
 HEAVY = ("cvxpy", "highspy", "matplotlib", "pydantic", "flint", "scipy", "typer", "rich", "numpy")
 
@@ -32,6 +33,16 @@ def test_import_loads_nothing_heavy() -> None:
 def test_every_public_callable_is_documented() -> None:
     missing = [n for n in ratt_opt.__all__ if callable(v := getattr(ratt_opt, n)) and not v.__doc__]
     assert missing == []
+
+
+def test_classes_of_parameters_are_frozen_and_explain_every_field() -> None:
+    """Those within others, too; what bundles settings of other kinds explains itself in its text."""
+    names = [name for name in ratt_opt.__all__ if name.endswith(("Params", "Limits", "Shape"))]
+    assert len(names) > 10
+    for name in names:
+        kind = getattr(ratt_opt, name)
+        assert kind.__dataclass_params__.frozen
+        assert not undocumented(kind())
 
 
 def test_every_name_has_one_topic() -> None:

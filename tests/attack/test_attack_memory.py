@@ -20,13 +20,14 @@ PIECES = 20_000
 
 
 @pytest.mark.parametrize("seed", range(1, 13))
-def test_prices_are_gone_on_with_from_one_small_budget_to_the_next(seed: int) -> None:
+@pytest.mark.parametrize(("name", "growth"), [("dual prices", 50), ("listed columns", PIECES)])
+def test_a_search_is_gone_on_with_from_one_small_budget_to_the_next(name: str, growth: int, seed: int) -> None:
     problem, plan = team_problem(seed, 3 + seed % 4)
-    search = Search("dual prices", problem, plan)
+    search = Search(name, problem, plan)
     bracket = search.bracket
     truth, ends = brute_force_worst_case(problem, plan), (bracket.lower, bracket.upper)
     for piece in range(PIECES):
-        if search.run(Budget(max_nodes=1 + piece % 50)) is ro.Stop.CLOSED:
+        if search.run(Budget(max_nodes=1 + piece % growth)) is ro.Stop.CLOSED:
             break
         assert ends[0] <= bracket.lower <= truth * (1 + 1e-9) + 1e-10
         assert truth <= bracket.upper * (1 + 1e-9) + 1e-10

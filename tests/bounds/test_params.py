@@ -11,7 +11,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt import BoundParams
 from ratt_opt.bounds.group_size import achievable_group_size
-from tests.extremes import extreme, places, undocumented, value_at, with_one
+from tests.extremes import at_extremes, places
 
 
 @cache
@@ -23,19 +23,13 @@ def team() -> tuple[ro.Problem, float]:
     return problem, ro.exhaustive_optimum(problem).lower
 
 
-def test_every_field_says_what_it_trades() -> None:
-    assert not undocumented(BoundParams())
-
-
 @pytest.mark.parametrize("place", places(BoundParams()))
 def test_no_bound_is_false_at_extremes(place: str) -> None:
     problem, best = team()
     plan = ro.ratt(problem).elements
     worst, k = ro.worst_case_attack(problem, plan).lower, ro.curvature(problem.objective, problem.robot)
     smallest = achievable_group_size(problem)
-    for least in (True, False):
-        value = extreme(value_at(BoundParams(), place), least=least)
-        params = with_one(BoundParams(), place, value)
+    for _, params in at_extremes(BoundParams(), place):
         assert achievable_group_size(problem, params=params) >= smallest
         assert worst >= float(ro.instance_bound(problem, plan, k=k, params=params)) * best * (1 - 1e-9)
         attack = ro.worst_case_attack(problem, plan).attack

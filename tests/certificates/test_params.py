@@ -13,7 +13,7 @@ from ratt_opt import CertificateParams, VerifierLimits
 from ratt_opt.certificates.params import AT_LEAST_ONE
 from ratt_opt.cli import run
 from ratt_opt.errors import UndecidedError
-from tests.extremes import extreme, places, undocumented, value_at, with_one
+from tests.extremes import at_extremes, places, with_one
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,22 +30,11 @@ def solved(kind: str) -> tuple[ro.Problem, ro.MaxMinResult]:
     return problem, ro.solve_maxmin(problem)
 
 
-def test_every_field_says_what_it_trades() -> None:
-    assert not undocumented(CertificateParams())
-    assert not undocumented(VerifierLimits())
-
-
 @pytest.mark.parametrize("kind", ["network", "views"])
 @pytest.mark.parametrize("place", [place for place in places(CertificateParams()) if not place.startswith("verifier.")])
 def test_a_written_certificate_is_true_whatever_one_parameter_is(place: str, kind: str, tmp_path: Path) -> None:
     problem, found = solved(kind)
-    for least in (True, False):
-        value = extreme(value_at(CertificateParams(), place), least=least)
-        try:
-            params = with_one(CertificateParams(), place, value)
-        except ro.InputError:
-            assert place in {*AT_LEAST_ONE, "covers.unit", "points.precision"}
-            continue
+    for _, params in at_extremes(CertificateParams(), place, {*AT_LEAST_ONE, "covers.unit", "points.precision"}):
         try:
             written = ro.certify(problem, found, tmp_path / "c.json", time_limit=2.0, params=params)
         except UndecidedError:
@@ -65,13 +54,7 @@ def good(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("place", places(VerifierLimits()))
 def test_limits_decide_if_a_file_is_decided_and_never_what_is_proved(place: str, good: Path) -> None:
     proved = ro.verify_certificate(good)
-    for least in (True, False):
-        value = extreme(value_at(VerifierLimits(), place), least=least)
-        try:
-            limits = with_one(VerifierLimits(), place, value)
-        except ro.InputError:
-            assert place in {"block", "told"}
-            continue
+    for least, limits in at_extremes(VerifierLimits(), place, {"block", "told"}):
         try:
             assert ro.verify_certificate(good, limits=limits) == proved
         except (ro.FileFormatError, UndecidedError):

@@ -367,11 +367,6 @@ def test_new_draws_the_network_of_its_family(tmp_path: Path) -> None:
         assert load_scenario(path) == network_scenario(family, 9, 3, alpha_s=1, alpha_c=2, seed=7)
 
 
-def test_schema_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["schema"]) == 0
-    assert _strict(capsys.readouterr().out)["title"] == "Scenario"
-
-
 def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
     for command in ("demo", "new", "bound", "attack", "verify", "audit", "schema"):
         assert run([command, "--help"]) == 0

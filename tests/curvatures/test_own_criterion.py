@@ -13,21 +13,9 @@ from ratt_opt.budget import Budget
 from ratt_opt.setfunctions.information import InformationObjective
 from tests.curvatures.engine import SEARCHED
 from tests.setfunctions import oracle
-from tests.strategies import information_data
+from tests.strategies import SquaredVariances, information_data
 
 OWNERS = np.array([0, 0, 1, 1, 2, 3])
-
-
-class SquaredVariances(InformationObjective):
-    """``sum_j w_j tr(P_j^2)``."""
-
-    def criterion(self, posterior_information):
-        covariance = np.linalg.inv(posterior_information)
-        return self.weights * np.trace(covariance @ covariance, axis1=-2, axis2=-1)
-
-    def gradient(self, posterior_information):
-        covariance = np.linalg.inv(posterior_information)
-        return 2 * self.weights[:, None, None] * (covariance @ covariance @ covariance)
 
 
 class RootOfLogDet(InformationObjective):

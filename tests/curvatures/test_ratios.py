@@ -80,45 +80,10 @@ def test_brackets_hold_the_exact_value_where_the_domain_is_taken_for_too_large(s
     check_curvature(f, ro.generalised_curvature(f, owners, params=SEARCHED), exact[1])
 
 
-@pytest.mark.parametrize("family", ["modular", "coverage", "matroid rank", "facility location", "concave of modular"])
-def test_submodular_functions_have_ratio_one_and_alpha_is_their_curvature(family):
-    rng = np.random.default_rng(23)
-    for _ in range(10):
-        known = ro.reference(family, int(rng.integers(2, 8)), rng)
-        assert ro.submodularity_ratio(known.function).upper == pytest.approx(1, abs=1e-9)
-        assert ro.generalised_curvature(known.function).upper == pytest.approx(known.curvature, abs=1e-9)
-
-
-def test_supermodular_functions_have_alpha_zero():
-    known = ro.reference("convex of modular", 6, np.random.default_rng(24))
-    assert ro.generalised_curvature(known.function).upper == pytest.approx(0, abs=1e-9)
-    weights = known.function.weights
-    total = weights.sum()
-    assert ro.submodularity_ratio(known.function).upper == pytest.approx((weights**2).sum() / total**2)
-
-
 def test_nothing_restricts_a_function_that_never_gains():
     f = ro.TableFunction(np.full(8, 2.0))
     assert ro.submodularity_ratio(f).lower == 1
     assert ro.generalised_curvature(f).upper == 0
-
-
-def test_relabelling_and_scaling_change_nothing():
-    rng = np.random.default_rng(25)
-    values = monotone_table(rng, 5) + rng.random()
-    order = rng.permutation(5)
-    masks = np.arange(32)
-    moved = (((masks[:, None] >> order) & 1) << np.arange(5)).sum(axis=1)
-    f, g = ro.TableFunction(values), ro.TableFunction(1e-6 * values[moved])
-    for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
-        assert quantity(f).upper == pytest.approx(quantity(g).upper, abs=1e-9)
-
-
-def test_a_function_that_falls_is_refused():
-    f = ro.TableFunction([0.0, 1.0, 1.0, 0.5])
-    for quantity in (ro.submodularity_ratio, ro.generalised_curvature):
-        with pytest.raises(ro.InputError, match="f must be non-decreasing"):
-            quantity(f)
 
 
 def test_a_domain_too_large_for_a_table_has_a_bracket():

@@ -23,14 +23,6 @@ def _smallest_largest_part(n_robots: int, alpha_c: int) -> int:
     )
 
 
-def test_figure_of_five_robots() -> None:
-    # ratt.tex, fig:caa_show: links kept when the largest group has n robots.
-    kept = [0, 2, 4, 6, 10]
-    for n, e_bar in enumerate(kept, start=1):
-        assert caa(5, 10 - e_bar).n_max == n
-    assert caa(5, 7).n_max == 3
-
-
 @pytest.mark.parametrize(("n_robots", "alpha_c", "n_max", "alpha_cs"), [(10, 29, 5, 5), (4, 3, 3, 1), (4, 4, 2, 2)])
 def test_numbers_of_the_paper(n_robots: int, alpha_c: int, n_max: int, alpha_cs: int) -> None:
     result = caa(n_robots, alpha_c)

@@ -11,7 +11,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt import FitParams, MissionModel, MissionParams
 from ratt_opt.cli import run
-from tests.extremes import extreme, places, undocumented, value_at, with_one
+from tests.extremes import at_extremes, places
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,21 +25,10 @@ def mission(params: MissionParams, **options) -> ro.Mission:
     return ro.run_mission(scenario, steps=2, seed=1, model=model, **options)
 
 
-def test_every_field_says_what_it_trades() -> None:
-    assert not undocumented(MissionParams())
-    assert not undocumented(FitParams())
-
-
 @pytest.mark.parametrize("place", places(MissionParams()))
 def test_missions_and_trackers_end_at_extremes(place: str) -> None:
     """Beliefs stay covariances, and plans are plans of the team."""
-    for least in (True, False):
-        value = extreme(value_at(MissionParams(), place), least=least)
-        try:
-            params = with_one(MissionParams(), place, value)
-        except ro.InputError:
-            assert place in REFUSED
-            continue
+    for _, params in at_extremes(MissionParams(), place, REFUSED):
         try:
             flown = mission(params)
         except ro.InputError:
@@ -87,9 +76,8 @@ def test_fitted_sensors_are_sensors_at_extremes(place: str) -> None:
     rng = np.random.default_rng(0)
     distance, bearing = rng.uniform(1, 9, 60), rng.uniform(-0.6, 0.6, 60)
     errors = rng.standard_normal((2, 60)) * [[0.1], [0.02]]
-    for least in (True, False):
+    for least, params in at_extremes(FitParams(), place, places(FitParams())):
         try:
-            params = with_one(FitParams(), place, extreme(value_at(FitParams(), place), least=least))
             found = ro.fit_sensor(distance, bearing, *errors, params=params)
         except ro.InputError:
             assert least or place in {"fewest", "outliers"}

@@ -69,28 +69,6 @@ def test_marginals_and_batches_are_differences_of_values(kind):
         assert np.allclose(f.extensions(base, candidates), expected, atol=1e-10)
 
 
-@pytest.mark.parametrize("kind", OBJECTIVES)
-def test_criteria_grow_and_are_concave_in_the_information(kind):
-    rng = np.random.default_rng(8)
-    for _ in range(40):
-        f = OBJECTIVES[kind](*information_data(rng, 6, 3, 2))
-        assert isinstance(f, InformationObjective)
-        low, high = (f.posterior_information(np.flatnonzero(rng.random(6) < 0.5)) for _ in range(2))
-        middle = f.value((low + high) / 2)
-        assert middle >= (f.value(low) + f.value(high)) / 2 - 1e-9
-        assert f.value(low + high) >= max(f.value(low), f.value(high)) - 1e-9
-
-
-@pytest.mark.parametrize("kind", ["trace", "maxeig"])
-def test_units_scale_the_value_and_logdet_is_free_of_them(kind):
-    rng = np.random.default_rng(9)
-    prior, information = information_data(rng, 6, 3, 2)
-    centimetres = OBJECTIVES[kind](prior * 1e4, information / 1e4)
-    assert np.allclose(centimetres.table(), 1e4 * OBJECTIVES[kind](prior, information).table())
-    scaled = ro.LogDetObjective(prior * 1e4, information / 1e4)
-    assert np.allclose(scaled.table(), ro.LogDetObjective(prior, information).table())
-
-
 def test_extreme_scales_keep_their_digits():
     """A diffuse prior and a sharp sensor: the value is the prior's variance less the sensor's."""
     f = ro.TraceObjective([np.eye(2) * 1e6], [[np.eye(2) * 1e8]])

@@ -47,15 +47,6 @@ def test_too_many_plans_are_refused() -> None:
         exhaustive_optimum(problem)
 
 
-def test_relabelling_robots_changes_no_value() -> None:
-    rng = np.random.default_rng(11)
-    for _ in range(20):
-        problem = random_problem(rng, 3, kind="logdet", protect=False, complete=True)
-        order = rng.permutation(3)
-        relabelled = Problem(problem.objective, order[problem.robot], None, problem.alpha_s, problem.alpha_c)
-        assert exhaustive_optimum(relabelled).lower == pytest.approx(exhaustive_optimum(problem).lower, rel=1e-12)
-
-
 @pytest.mark.parametrize("calls", range(6))
 def test_an_interrupt_returns_the_bracket_so_far(calls: int, monkeypatch: pytest.MonkeyPatch) -> None:
     problem = random_problem(np.random.default_rng([4, calls]), 4, kind="trace")

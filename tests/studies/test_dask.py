@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from analysis.paper.small_scale import STUDY as SMALL
 from ratt_opt import InputError
 from ratt_opt.studies.engine import run
 from ratt_opt.studies.executors import open_executor
@@ -55,17 +54,6 @@ def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:
             table = run(STUDY, tmp_path / "dask", executor, trials=10, progress=Killing()).path
         assert first.wait(SLOW) != 0
     assert rows == 40
-    assert table.read_bytes() == expected
-
-
-def test_the_papers_rows_are_the_same_bytes_on_a_cluster(tmp_path: Path) -> None:
-    with open_executor(None, 1) as executor:
-        expected = run(SMALL, tmp_path / "local", executor, trials=1, progress=Progress()).path.read_bytes()
-    with ExitStack() as stack:
-        address = stack.enter_context(scheduler(tmp_path))
-        stack.enter_context(workers(2, address, tmp_path))
-        with open_executor(address, None) as executor:
-            table = run(SMALL, tmp_path / "dask", executor, trials=1, progress=Progress()).path
     assert table.read_bytes() == expected
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import combinations
 
 import networkx as nx
 import numpy as np
@@ -16,43 +15,6 @@ from ratt_opt.attack.edge_cuts.network import CutNetwork
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.communication import CommunicationGraph
 from tests.attack.edge_cuts.test_fewest import by_all_partitions, random_case
-
-
-def sparse_graph(rng: np.random.Generator) -> nx.Graph:
-    """A tree or a forest of up to eleven robots, with up to four links more."""
-    n = int(rng.integers(1, 12))
-    tree = nx.random_labeled_tree(n, seed=int(rng.integers(2**31)))
-    graph = nx.Graph()
-    graph.add_nodes_from(range(n))
-    graph.add_edges_from(edge for edge in tree.edges if rng.random() < 0.95)
-    for i, j in rng.integers(0, n, (int(rng.integers(0, 5)), 2)).tolist():
-        if i != j:
-            graph.add_edge(i, j)
-    return graph
-
-
-def smallest_by_every_cut(graph: nx.Graph, alpha_c: int, protected: set[tuple[int, int]]) -> int:
-    links = [link for link in graph.edges if tuple(sorted(link)) not in protected]
-    sizes = []
-    for cut in combinations(links, min(alpha_c, len(links))):
-        left = graph.copy()
-        left.remove_edges_from(cut)
-        sizes.append(max(map(len, nx.connected_components(left))))
-    return min(sizes)
-
-
-@pytest.mark.parametrize("first", range(0, 150, 50))
-def test_the_smallest_largest_group_is_that_of_every_cut(first: int):
-    for seed in range(first, first + 50):
-        rng = np.random.default_rng(seed)
-        graph = sparse_graph(rng)
-        links = sorted(tuple(sorted(link)) for link in graph.edges)
-        protected = {link for link in links if rng.random() < 0.2}
-        alpha_c = int(rng.integers(0, min(4, len(links)) + 1))
-        found = smallest_largest_group(graph, alpha_c, protected_links=protected)
-        assert found.lower == found.upper == smallest_by_every_cut(graph, alpha_c, protected)
-        assert len(found.cut) <= alpha_c
-        assert not found.cut & protected
 
 
 def eliminated(seed: int, largest: int) -> None:
@@ -128,12 +90,6 @@ def test_trees_of_hundreds_are_decided_for_any_number_of_cuts():
         assert all(size.is_exact for size in sizes)
         assert [size.upper for size in sizes] == sorted((size.upper for size in sizes), reverse=True)
         assert (sizes[0].upper, sizes[-1].upper) == (n, 1)
-
-
-def test_a_path_falls_into_equal_parts():
-    for n in (30, 101):
-        for k in (1, 2, 6):
-            assert smallest_largest_group(nx.path_graph(n), k).upper == -(-n // (k + 1))
 
 
 def test_a_budget_of_nodes_leaves_a_true_bracket():

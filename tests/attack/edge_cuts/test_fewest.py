@@ -137,20 +137,6 @@ def test_both_directions_for_every_budget(seed):
         assert size.upper == next(r for r in range(1, 8) if fewest[r - 1].upper <= k)
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_scaling_and_renaming_change_nothing(seed):
-    graph, weights, sizes, _, size = random_case(4 * seed + 1)
-    found = ro.fewest_cuts(graph, size, weights=weights, sizes=sizes)
-    tenths = {link: weight / 10 for link, weight in weights.items()}
-    scaled = ro.fewest_cuts(graph, size * 0.5, weights=tenths, sizes=[0.5 * one for one in sizes])
-    assert scaled.upper == pytest.approx(found.upper / 10, abs=1e-12)
-    assert scaled.is_exact
-    n = graph.number_of_nodes()
-    moved = nx.relabel_nodes(graph, {i: n - 1 - i for i in range(n)})
-    turned = {(n - 1 - i, n - 1 - j): weight for (i, j), weight in weights.items()}
-    assert ro.fewest_cuts(moved, size, weights=turned, sizes=sizes[::-1]).upper == found.upper
-
-
 @pytest.mark.parametrize("seed", range(15))
 def test_pricing_finds_and_lists_the_groups_of_the_definition(seed):
     rng = np.random.default_rng(seed)

@@ -137,10 +137,3 @@ def test_limits_are_kept_by_a_thousand_robots(choose, shape):
     found = choose(problem, np.arange(1000), 3, time_limit=0.1)
     assert time.process_time() - began <= 2.105
     assert 0 < found.lower <= found.upper
-
-
-def test_one_link_gains_what_the_ranking_says():
-    problem = ro.network_scenario("hubs", 9, 4, alpha_s=2, alpha_c=6, seed=3).problem("logdet")
-    elements = ro.ratt(problem).elements
-    gains = [row.gain_lower for row in ro.criticality_ranking(problem, elements) if not isinstance(row.target, int)]
-    assert links_to_protect(problem, elements, 1).gain_lower == pytest.approx(max(gains), abs=1e-8)

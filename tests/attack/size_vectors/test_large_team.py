@@ -127,18 +127,3 @@ def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     assert result.stop is (ro.Stop.INTERRUPTED if asked.calls >= calls else ro.Stop.CLOSED)
     assert result.lower <= expected.upper <= result.upper * (1 + 1e-9)
     assert attains(problem, np.arange(13), result)
-
-
-@pytest.mark.parametrize("protected", [frozenset(), frozenset({0, 5, 9})])
-def test_relabelling_a_large_team_changes_nothing(protected):
-    rng = np.random.default_rng(8)
-    data = range_bearing(rng, 15, 5, 1)
-    order = rng.permutation(15)
-    values = []
-    for new in (np.arange(15), order):
-        information = np.empty_like(data[1])
-        information[new] = data[1]
-        kept = frozenset(int(new[i]) for i in protected)
-        problem = ro.Problem(ro.LogDetObjective(data[0], information), np.arange(15), None, 4, 26, kept)
-        values.append(ro.worst_case_attack(problem, np.arange(15)).upper)
-    assert values[0] == pytest.approx(values[1], rel=1e-9)

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import networkx as nx
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.budget import Budget
-from tests.attack.engine import Search, searched
+from tests.attack.engine import searched
 from tests.brackets import assert_closed, worst_value
 from tests.oracles import brute_force_worst_case
 from tests.strategies import team_problem
@@ -50,18 +47,3 @@ def test_the_bracket_is_valid_at_every_node_count(seed):
         assert bracket.upper >= expected * (1 - 2e-10)
         assert problem.team_value(plan, bracket.attack) == bracket.upper
         assert (stop is ro.Stop.NODES) == (limit < nodes)
-
-
-@pytest.mark.parametrize("seed", range(12))
-def test_it_goes_on_from_one_small_budget_to_the_next(seed):
-    problem, plan = team_problem(seed, 4 + seed % 4)
-    search = Search("listed columns", problem, plan)
-    truth, ends, bracket = brute_force_worst_case(problem, plan), (0.0, math.inf), search.bracket
-    for piece in range(2_000):
-        if search.run(Budget(max_nodes=1 + piece)) is ro.Stop.CLOSED:
-            break
-        assert ends[0] <= bracket.lower <= truth * (1 + 1e-9) + 1e-10
-        assert truth <= bracket.upper * (1 + 1e-9) + 1e-10
-        assert bracket.upper <= ends[1]
-        ends = bracket.lower, bracket.upper
-    assert_closed(problem, plan, bracket, truth)

@@ -11,7 +11,7 @@ from ratt_opt.attack.params import MasterParams
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.thresholds import exact_cover, sets_below
 from ratt_opt.attack.thresholds.all_sets import decide
-from ratt_opt.attack.thresholds.columns import UNIT, Columns, IntegerDuals
+from ratt_opt.attack.thresholds.columns import UNIT, Columns
 from ratt_opt.attack.thresholds.exact_cover import ExactCover
 from ratt_opt.attack.thresholds.master import best_duals
 from ratt_opt.attack.thresholds.sets_below import SetsBelow
@@ -251,11 +251,3 @@ def test_the_smallest_teams(robots):
     below = SetsBelow(team)
     assert below.mark(0.5, Budget())[1] == (None if robots == 0 else 1)
     assert below.sizes.tolist() == [1] + [1] * robots
-
-
-def test_the_same_question_has_the_same_answer():
-    problem = random_problem(np.random.default_rng(11), 10, kind="trace", controls=1, protect=False)
-    plan = ro.ratt(problem).elements
-    found = [ro.worst_case_attack(problem, plan) for _ in range(2)]
-    assert found[0] == found[1]
-    assert IntegerDuals(np.arange(3), 2).claim(1) == 1

@@ -116,14 +116,6 @@ def test_the_search_for_the_best_plan_keeps_its_time() -> None:
     assert tracker.state.steps == 3
 
 
-def test_errors_of_a_planner_are_raised() -> None:
-    def broken(_problem):
-        raise RuntimeError("broken")
-
-    with pytest.raises(RuntimeError, match="broken"):
-        Tracker(team(), planner=broken, time_limit=1.0, strict=True).step()
-
-
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [

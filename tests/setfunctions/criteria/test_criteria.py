@@ -12,20 +12,7 @@ import ratt_opt as ro
 from ratt_opt.attack.team import Team
 from ratt_opt.setfunctions.criteria.registry import CRITERIA, get_criterion
 from ratt_opt.setfunctions.information import InformationObjective, from_triangles, triangles
-from tests.strategies import OBJECTIVES, information_data
-
-
-class SquaredVariances(InformationObjective):
-    """``sum_j w_j tr(P_j^2)``, which no file of the library knows; convex in ``L = P^{-1}`` as ``x^{-2}`` is."""
-
-    def criterion(self, posterior_information):
-        covariance = np.linalg.inv(posterior_information)
-        return self.weights * np.trace(covariance @ covariance, axis1=-2, axis2=-1)
-
-    def gradient(self, posterior_information):
-        covariance = np.linalg.inv(posterior_information)
-        return 2 * self.weights[:, None, None] * (covariance @ covariance @ covariance)
-
+from tests.strategies import OBJECTIVES, SquaredVariances, information_data
 
 ALL = [*CRITERIA.values(), SquaredVariances]
 
@@ -71,22 +58,6 @@ def test_gradients_are_supergradients_and_point_upwards(criterion):
         assert np.linalg.eigvalsh(slope).min() >= -1e-9 * np.abs(slope).max()
         scale = 1 + f.prior_magnitude + np.abs(slope * (other - point)).sum()
         assert f.value(other) <= f.value(point) + (slope * (other - point)).sum() + 1e-9 * scale
-
-
-@pytest.mark.parametrize("criterion", ALL)
-def test_the_planar_and_the_general_formula_agree(criterion):
-    rng = np.random.default_rng(53)
-    for _ in range(40):
-        f = draw(rng, criterion, 2)
-        rows = np.stack([random_information(rng, f) for _ in range(5)])
-        if f.compiled_code is None:
-            continue
-        # The same targets with a third coordinate of its own: the general formula.
-        wide = np.zeros((5, f.n_targets, 3, 3))
-        wide[..., :2, :2], wide[..., 2, 2] = rows, 1e9
-        general = type(f)(np.tile(np.eye(3), (f.n_targets, 1, 1)), np.zeros((1, f.n_targets, 3, 3)), f.weights)
-        known = {"trace": f.weights * 1e-9, "logdet": -f.weights * np.log(1e9), "maxeig": 0.0}[f.name]
-        assert general.criterion(wide) - known == pytest.approx(f.criterion(rows), rel=1e-9)
 
 
 def test_parts_are_inherited_with_the_formula_they_belong_to_and_another_formula_is_refused():

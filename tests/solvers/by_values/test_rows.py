@@ -191,15 +191,6 @@ def test_rows_close_what_their_fractional_plans_solve(seed):
     assert found.upper - found.lower <= 0.01 * found.lower
 
 
-def test_an_attack_without_cuts_is_enumerated_exactly():
-    rng = np.random.default_rng(5)
-    for _ in range(20):
-        f = ro.TableFunction(np.append(0.0, rng.random(255)))  # not even non-decreasing
-        problem = ro.Problem(f, np.arange(8), None, 3, 0)
-        attack = ro.worst_case_attack(problem, np.arange(8))
-        assert attack.lower == attack.upper == brute_force_worst_case(problem, np.arange(8))
-
-
 class Claims(ro.SetFunction):
     """Says that it is submodular, and is not."""
 

@@ -17,13 +17,13 @@ ELEMENTS = 8
 ALL_SETS = (np.arange(2**ELEMENTS)[:, None] >> np.arange(ELEMENTS) & 1).astype(bool)
 
 
-def drawn_task(rng: np.random.Generator) -> Task:
-    """A team of up to eight elements, of dimension one to three, that see targets well, badly or not at all."""
-    robots, targets, d = int(rng.integers(1, 5)), int(rng.integers(1, 4)), int(rng.integers(1, 4))
-    owner = np.sort(np.concatenate([np.arange(robots), rng.integers(0, robots, ELEMENTS - robots)]))
-    roots = rng.normal(size=(ELEMENTS, targets, d, d)) * 10.0 ** rng.uniform(-3, 3, size=(ELEMENTS, targets, 1, 1))
-    roots[rng.random((ELEMENTS, targets)) < 0.4, 1:] = 0.0  # one direction
-    roots[rng.random((ELEMENTS, targets)) < 0.3] = 0.0
+def drawn_task(rng: np.random.Generator, elements: int = ELEMENTS) -> Task:
+    """A team of some elements, of dimension one to three, that see targets well, badly or not at all."""
+    robots, targets, d = int(rng.integers(1, 1 + elements // 2)), int(rng.integers(1, 4)), int(rng.integers(1, 4))
+    owner = np.sort(np.concatenate([np.arange(robots), rng.integers(0, robots, elements - robots)]))
+    roots = rng.normal(size=(elements, targets, d, d)) * 10.0 ** rng.uniform(-3, 3, size=(elements, targets, 1, 1))
+    roots[rng.random((elements, targets)) < 0.4, 1:] = 0.0  # one direction
+    roots[rng.random((elements, targets)) < 0.3] = 0.0
     information = np.einsum("ejki,ejkl->ejil", roots, roots)
     spread = rng.normal(size=(targets, d, d))
     prior = spread @ np.swapaxes(spread, 1, 2) + 0.05 * np.eye(d)

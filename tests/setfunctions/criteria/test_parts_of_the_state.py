@@ -1,4 +1,4 @@
-"""The worst axis of a part of the state: values, exact attacks, max-min, curvature and certificates."""
+"""The trace and the worst axis of a part of the state: values, attacks, max-min, curvature and certificates."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from ratt_opt import (
     MaxEigenvalueObjective,
     Problem,
     ProofError,
+    TraceObjective,
     certify,
     exhaustive_optimum,
     ratt,
@@ -31,12 +32,13 @@ from tests.setfunctions import oracle
 from tests.strategies import information_data, random_elements
 
 WEIGHTS = [1.0, 2.0]
+TRACE, WORST_AXIS = KINDS = [TraceObjective, MaxEigenvalueObjective]
 
 
-def part_problem(rng, n_robots=4, d=4, q=2, controls=3, graph=None):  # noqa: PLR0917
-    """A small problem whose criterion is the worst axis of ``q`` outputs of ``d`` states, of two targets."""
+def part_problem(rng, n_robots=4, d=4, q=2, *, kind=WORST_AXIS, controls=3, graph=None):
+    """A small problem whose criterion is about ``q`` outputs of ``d`` states, of two targets."""
     prior, information = information_data(rng, controls * n_robots, 2, d)
-    objective = MaxEigenvalueObjective(prior, information, WEIGHTS, output=rng.normal(size=(2, q, d)))
+    objective = kind(prior, information, WEIGHTS, output=rng.normal(size=(2, q, d)))
     owners = np.repeat(np.arange(n_robots), controls)
     links = n_robots * (n_robots - 1) // 2 if graph is None else graph.number_of_edges()
     return Problem(objective, owners, graph, 1, min(3, links))
@@ -44,20 +46,20 @@ def part_problem(rng, n_robots=4, d=4, q=2, controls=3, graph=None):  # noqa: PL
 
 def by_definition(f, subset) -> float:
     covariance = np.linalg.inv(np.linalg.inv(f.prior) + f.information[list(subset)].sum(axis=0))
+    whole, of_one = (sum, np.trace) if isinstance(f, TRACE) else (max, lambda M: np.linalg.eigvals(M).real.max())
     before, after = (
-        max(
-            w * np.linalg.eigvals(C @ P @ C.T).real.max() for w, C, P in zip(f.weights, f.output, matrices, strict=True)
-        )
+        whole(w * of_one(C @ P @ C.T) for w, C, P in zip(f.weights, f.output, matrices, strict=True))
         for matrices in (f.prior, covariance)
     )
     return before - after
 
 
 @pytest.mark.parametrize("d", [1, 2, 3, 4])
-def test_the_identity_gives_the_worst_axis(d: int) -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_identity_gives_the_whole_state(kind, d: int) -> None:
     prior, information = information_data(np.random.default_rng(d), 6, 3, d)
-    plain = MaxEigenvalueObjective(prior, information, [1.0, 2.0, 0.5])
-    whole = MaxEigenvalueObjective(prior, information, [1.0, 2.0, 0.5], output=np.eye(d))
+    plain = kind(prior, information, [1.0, 2.0, 0.5])
+    whole = kind(prior, information, [1.0, 2.0, 0.5], output=np.eye(d))
     np.testing.assert_allclose(whole.table(), plain.table(), rtol=1e-11, atol=1e-12)
     assert whole.prior_criterion == pytest.approx(plain.prior_criterion)
     assert whole.prior_eigenvalue == pytest.approx(plain.prior_eigenvalue)
@@ -66,8 +68,9 @@ def test_the_identity_gives_the_worst_axis(d: int) -> None:
 
 
 @pytest.mark.parametrize("q", [1, 2, 3])
-def test_values_are_those_of_the_definition(q: int) -> None:
-    f = part_problem(np.random.default_rng(q), q=q).objective
+@pytest.mark.parametrize("kind", KINDS)
+def test_values_are_those_of_the_definition(kind, q: int) -> None:
+    f = part_problem(np.random.default_rng(q), q=q, kind=kind).objective
     for subset in ([], [0], [1, 5, 8], range(12)):
         assert f(subset) == pytest.approx(by_definition(f, subset), abs=1e-10)
     step = 1e-6 * np.eye(4)[None]
@@ -92,10 +95,11 @@ def test_tangents_are_above_and_touch(q: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_attacks_and_optima_are_exact(seed: int) -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_attacks_and_optima_are_exact(kind, seed: int) -> None:
     rng = np.random.default_rng(seed)
     graph = nx.cycle_graph(4) if seed % 3 == 2 else None
-    problem = part_problem(rng, d=2 + seed % 3, q=1 + seed % 2, graph=graph)
+    problem = part_problem(rng, d=2 + seed % 3, q=1 + seed % 2, kind=kind, graph=graph)
     plan = random_elements(rng, problem)
     assert worst_value(problem, plan) == pytest.approx(brute_force_worst_case(problem, plan), rel=1e-9)
     found = solve_maxmin(problem)
@@ -107,9 +111,9 @@ def test_attacks_and_optima_are_exact(seed: int) -> None:
 
 @pytest.mark.parametrize("d", [2, 4])
 @pytest.mark.parametrize("q", [1, 2])
-def test_total_curvature_brackets_every_ratio(d: int, q: int) -> None:
-    problem = part_problem(np.random.default_rng(d), n_robots=3, d=d, q=q, controls=2)
-    f = problem.objective
+@pytest.mark.parametrize("kind", KINDS)
+def test_total_curvature_brackets_every_ratio(kind, d: int, q: int) -> None:
+    f = part_problem(np.random.default_rng(d), n_robots=3, d=d, q=q, kind=kind, controls=2).objective
     found = total_curvature(f)
     assert found.lower - 1e-7 <= oracle.total_curvature(f.table()) <= found.upper + 1e-7
 
@@ -131,6 +135,46 @@ def test_marginals_lie_between_their_ends(seed: int) -> None:
         assert max(marginals) <= upper[e] <= f.prior_criterion
 
 
+def changed(document: dict, where: list, change) -> dict:
+    """A copy with one place changed."""
+    bad = copy.deepcopy(document)
+    record = bad
+    for key in where[:-1]:
+        record = record[key]
+    record[where[-1]] = change(record[where[-1]])
+    return bad
+
+
+@pytest.mark.parametrize("output", [None, np.eye(3)])
+def test_the_largest_marginal_may_need_a_context_that_leaves_two_axes(output) -> None:
+    """A look along a well known axis tells little, unless that axis is known anyway: then much of the others."""
+    look = np.array([3.0, 100.0, 0.0])
+    about = np.outer(look, look) + np.diag([0.0, 0.0, 9.0])
+    f = TraceObjective(np.diag([1.0, 0.1, 1.0])[None], [[about], [np.diag([0.0, 1e6, 0.0])]], output=output)
+    _, largest = f.marginal_ends(np.arange(2), Budget())
+    assert f([0, 1]) - f([1]) > 1.7 > f([0])
+    assert f([0, 1]) - f([1]) <= largest[0]
+
+
+def test_certificates_of_the_trace_are_written_and_have_teeth(tmp_path) -> None:
+    problem = part_problem(np.random.default_rng(7), n_robots=3, kind=TRACE)
+    path = tmp_path / "certificate.json"
+    written = certify(problem, solve_maxmin(problem), path)
+    assert written.verified.lower_proved
+    assert written.verified.lower <= exhaustive_optimum(problem).lower * (1 + 1e-9)
+    good = json.loads(path.read_text())
+    low = 0.99 * good["claim"]["lower"]
+    lies = (
+        (["problem", "output", 0, 0], lambda x: x + 0.5),
+        (["upper", "points", 0, 0], lambda row: [x + 0.5 for x in row]),
+        (["claim"], lambda _: {"lower": 0.9 * low, "upper": low}),
+    )
+    for where, change in lies:
+        path.write_text(json.dumps(changed(good, where, change)))
+        with pytest.raises(ProofError):
+            verify_certificate(path)
+
+
 @pytest.mark.parametrize(("d", "graph"), [(2, None), (4, None), (3, nx.path_graph(3))])
 def test_certificates_are_written_and_have_teeth(tmp_path, d: int, graph: nx.Graph | None) -> None:
     problem = part_problem(np.random.default_rng(7), n_robots=3, d=d, graph=graph)
@@ -144,12 +188,7 @@ def test_certificates_are_written_and_have_teeth(tmp_path, d: int, graph: nx.Gra
     assert good["problem"]["objective"] == "maxeig"
 
     def refused(where: list, change, match: str) -> None:
-        bad = copy.deepcopy(good)
-        record = bad
-        for key in where[:-1]:
-            record = record[key]
-        record[where[-1]] = change(record[where[-1]])
-        path.write_text(json.dumps(bad))
+        path.write_text(json.dumps(changed(good, where, change)))
         with pytest.raises(ProofError, match=match):
             verify_certificate(path)
 
@@ -212,13 +251,14 @@ def test_what_it_has_no_form_for_is_refused_by_name() -> None:
         f.conic_value([])
 
 
-def test_copies_and_refusals() -> None:
-    f = part_problem(np.random.default_rng(1)).objective
+@pytest.mark.parametrize("kind", KINDS)
+def test_copies_and_refusals(kind) -> None:
+    f = part_problem(np.random.default_rng(1), kind=kind).objective
     again = pickle.loads(pickle.dumps(f))
-    assert isinstance(again, MaxEigenvalueObjective)
+    assert isinstance(again, kind)
     assert again([1, 2]) == f([1, 2])
     assert f.restricted_to(np.array([1, 2]))([0, 1]) == f([1, 2])
     prior, information = information_data(np.random.default_rng(1), 3, 2, 3)
     for output in (np.eye(2), np.zeros((1, 3)), np.ones((2, 3)), np.ones((3, 1, 3)), np.array([[np.nan, 0, 0]])):
         with pytest.raises(InputError, match="output"):
-            MaxEigenvalueObjective(prior, information, output=output)
+            kind(prior, information, output=output)
