@@ -162,7 +162,7 @@ class Team:
     def value(self, robots: Iterable[int]) -> float:
         """Return the value of a set of robots."""
         sums = self.sums(robots)
-        return loops.set_value(self.record, address(sums))
+        return loops.value_of(self.record, address(sums))
 
     def all_values(self) -> FloatArray:
         """(2**N,) values of all sets of robots, by bit mask.

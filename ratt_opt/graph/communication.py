@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import networkx as nx
 import numpy as np
@@ -14,9 +14,13 @@ from ratt_opt.errors import InputError
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from numpy.typing import NDArray
+
     from ratt_opt._validation import BoolArray
 
-__all__ = ["CommunicationGraph", "Link", "mask_of", "membership", "neighbour_masks", "robots_of"]
+__all__ = ["CommunicationGraph", "Link", "mask_of", "membership", "neighbour_masks", "robots_of", "sums_of_subsets"]
+
+Number = TypeVar("Number", np.int64, np.float64)
 
 Link = tuple[int, int]
 """``(i, j)`` with ``i < j``."""
@@ -42,6 +46,14 @@ def mask_of(robots: Iterable[int]) -> int:
 def robots_of(mask: int) -> list[int]:
     """Robots of a set by bit mask, ascending."""
     return [i for i in range(mask.bit_length()) if mask >> i & 1]
+
+
+def sums_of_subsets(values: NDArray[Number]) -> NDArray[Number]:
+    """(2**n,) sum over each subset of n numbers, by bit mask."""
+    sums = np.zeros(1 << len(values), values.dtype)
+    for i, value in enumerate(values):
+        np.add(sums[: 1 << i], value, out=sums[1 << i : 2 << i])
+    return sums
 
 
 def membership(masks: Sequence[int], count: int) -> BoolArray:

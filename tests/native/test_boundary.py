@@ -30,7 +30,7 @@ CHANGES = {
     "a field is new": ("sets_of_size", "int64_t next, leaves, enters;", "int64_t next, leaves, enters, more;"),
     "an array is longer": ("groups", "int64_t room[3];", "int64_t room[4];"),
     "two arguments change places": ("groups", "int64_t gap, int64_t room", "int64_t room, int64_t gap"),
-    "an argument gets another type": ("team", "int64_t count, int robot", "int64_t count, int64_t robot"),
+    "an argument gets another type": ("pricing", "int64_t size, int64_t effort", "int size, int64_t effort"),
     "a result gets another type": ("groups", "EXPORTED int next_cover", "EXPORTED int64_t next_cover"),
     "a record becomes an array": ("sets_of_size", "int64_t pairs, Scan *scan,", "int64_t pairs, Scan scan[],"),
 }
@@ -84,8 +84,8 @@ DualsRecord(sums=address(whole), unit=1)
 DualsRecord(sums=address(whole), unit=1, blinding=0, more=1)
 loops.close_pricing(loops.open_sets())
 loops.close_pricing(loops.open_kept_links())
-loops.sums_of_sets(1, address(whole), address(floats), address(floats))
-loops.spread(address(np.zeros(4, np.uint8)), 4)
+loops.gain_ratio(address(whole), 1, address(whole), 0, 1, 0.0, address(whole), address(floats), address(whole))
+loops.largest_excess(address(floats), 4)
 """
 
 

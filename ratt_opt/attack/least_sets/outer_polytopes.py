@@ -27,10 +27,11 @@ __all__ = ["OuterPolytopes", "outer_polytopes", "target_values"]
 
 def target_values(family: SetFamily, matrices: FloatArray) -> FloatArray:
     """Value of each target's information (..., M, 3) -> (..., M); minus infinity if it is not positive definite."""
-    flat, values = np.ascontiguousarray(matrices), np.empty(matrices.shape[:-1])
-    count = values.size // len(family.team.weights)
-    loops.planar_values_of_targets(family.team.record, count, address(flat), address(values))
-    return values
+    targets = len(family.team.weights)
+    by_target = matrices.reshape(-1, targets, 3).transpose(1, 0, 2)
+    numbers = np.ones(by_target.shape[:2], dtype=np.int64)
+    values = _vertex_values(family, by_target, np.zeros((numbers.size, 3)), numbers)
+    return values.reshape(targets, -1).T.reshape(matrices.shape[:-1])
 
 
 def _cut_polytopes(

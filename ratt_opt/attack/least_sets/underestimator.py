@@ -18,8 +18,6 @@ import numpy as np
 
 from ratt_opt.attack.least_sets.outer_polytopes import OuterPolytopes, outer_polytopes, target_values
 from ratt_opt.attack.least_sets.smoothed_dual import DualProgram, Multipliers
-from ratt_opt.native.library import address
-from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
@@ -129,9 +127,10 @@ def _normals(
     params, counts = family.team.params.underestimator, np.diff(points.first)
     width = np.maximum(params.binding * np.abs(constants), 1e-300)
     closeness = 1 - (rest - np.repeat(constants, counts)) / np.repeat(width, counts)
-    weights = np.zeros((len(points.heavy), points.normals.shape[1]))
-    near, rows = np.ascontiguousarray(closeness), np.ascontiguousarray(points.rows)
-    loops.facet_weights(*weights.shape, address(points.first), address(near), address(rows), address(weights))
+    weights, near = np.zeros((len(points.heavy), points.normals.shape[1])), np.flatnonzero(closeness > 0)
+    facets = points.rows[near, None] >> np.arange(weights.shape[1], dtype=np.uint64) & np.uint64(1)
+    target = np.repeat(np.arange(len(counts)), counts)
+    np.add.at(weights, target[near], facets * closeness[near, None])
     weights[:, 6 : 6 + family.team.params.polytopes.sight] = 0.0  # those are there anyway
     order = np.argsort(-weights, axis=1, kind="stable")[:, : params.kept, None]
     kept = np.take_along_axis(points.normals, order, axis=1)

@@ -22,9 +22,8 @@ import numpy as np
 
 from ratt_opt.attack.size_vectors.disjoint_sets import SetColumns
 from ratt_opt.budget import Stop
+from ratt_opt.graph.communication import sums_of_subsets
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.native.library import address
-from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -38,6 +37,10 @@ __all__ = ["CoverBound", "SetClasses", "cover_bound"]
 
 MARGIN = 1e-9
 """Room, relative to the threshold, beyond what is proved: against rounding in the costs."""
+
+
+PART = 12
+"""Robots of a table of sums."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,8 +263,9 @@ class _DualProgram:
 
 def _sums(masks: MaskArray, amounts: FloatArray) -> FloatArray:
     """(K,) sum of the amounts of the robots in each mask."""
-    sums, masks, amounts = np.zeros(len(masks)), np.ascontiguousarray(masks), np.ascontiguousarray(amounts)
-    loops.sums_of_sets(len(masks), address(masks), address(amounts), address(sums))
+    sums = np.zeros(len(masks))
+    for first in range(0, len(amounts), PART):
+        sums += sums_of_subsets(amounts[first : first + PART])[masks >> np.uint64(first) & np.uint64(2**PART - 1)]
     return sums
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ratt_opt.attack.thresholds.exact_cover import ExactCover
-from ratt_opt.graph.communication import mask_of
+from ratt_opt.graph.communication import mask_of, sums_of_subsets
 from ratt_opt.graph.group_list import NARROW
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import ColumnsRecord, DualsRecord, loops
@@ -44,7 +44,7 @@ class IntegerDuals:
         parts = -(-len(self.robots) // PART)
         padded = np.zeros((parts, PART), np.int64)
         padded.flat[: len(self.robots)] = self.robots
-        return np.ascontiguousarray([_sums_of_sets(part) for part in padded])
+        return np.ascontiguousarray([sums_of_subsets(part) for part in padded])
 
     @property
     def record(self) -> DualsRecord:
@@ -54,13 +54,6 @@ class IntegerDuals:
     def claim(self, n_blinded: int) -> int:
         """Return the dual bound: the least cost of a cover of the team, if no column has a negative reduced cost."""
         return int(self.robots.sum()) - n_blinded * self.blinding
-
-
-def _sums_of_sets(values: IntArray) -> IntArray:
-    sums = np.zeros(1 << len(values), np.int64)
-    for i, value in enumerate(values):
-        sums[1 << i : 2 << i] = sums[: 1 << i] + value
-    return sums
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,10 +85,10 @@ class Columns:
     @classmethod
     def of(cls, groups: NDArray[np.uint32], cuts: NDArray[np.uint8], below: SetsBelow, n_blinded: int) -> Columns:
         """The groups in which blinding at most ``n_blinded`` robots leaves less than the threshold."""
-        kept, kept_cuts, blinded = np.empty_like(groups), np.empty_like(cuts), np.empty_like(cuts)
-        given = address(below.sizes), len(groups), address(groups), address(cuts), n_blinded
-        count = loops.keep_reachable(*given, address(kept), address(kept_cuts), address(blinded))
-        return cls(below.robots, kept[:count], kept_cuts[:count], blinded[:count])
+        left = below.sizes[groups]  # plus one, or 0
+        blinded = np.bitwise_count(groups) + np.uint8(1) - left
+        kept = (left > 0) & (blinded <= n_blinded)
+        return cls(below.robots, groups[kept], cuts[kept], blinded[kept])
 
     def __len__(self) -> int:
         return len(self.groups)

@@ -68,7 +68,7 @@ class SetsBelow:
         for robot in range(self.robots):
             budget.check()
             if robot not in self._protected:
-                loops.spread(address(self.sizes), len(self.sizes), robot)
+                _spread(self.sizes, robot)
         return following
 
     def _mark_sets(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
@@ -105,6 +105,14 @@ class SetsBelow:
             free = (i for i in range(self.robots) if inside >> i & 1 and i not in self._protected)
             inside = next(inside ^ 1 << i for i in free if self.sizes[inside ^ 1 << i] == size + 1)
         return inside
+
+
+def _spread(sizes: NDArray[np.uint8], robot: int) -> None:
+    """Let every set with a robot have at least what it has without it."""
+    without, having = sizes.reshape(-1, 2, 1 << robot).transpose(1, 2, 0)
+    columns = range(len(without)) if robot < 5 else [slice(None)]  # NumPy is slow along short rows
+    for k in columns:
+        np.maximum(without[k], having[k], out=having[k])
 
 
 def _fewest_blinded(robots: int, groups: NDArray[np.uint32] | None) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:

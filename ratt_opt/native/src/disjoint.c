@@ -116,10 +116,3 @@ int search_disjoint(DisjointSets *d, int64_t work) {
     }
     return 1;
 }
-
-void sums_of_sets(int64_t count, const uint64_t *masks, const double *amounts, double *sums) {
-    for (int64_t k = 0; k < count; k++) {
-        sums[k] = 0.0;
-        for (uint64_t rest = masks[k]; rest; rest &= rest - 1) sums[k] += amounts[lowest(rest)];
-    }
-}

@@ -44,17 +44,6 @@ int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *prot
     return found;
 }
 
-int64_t keep_reachable(const uint8_t *sizes, int64_t count, const uint32_t *groups, const uint8_t *cuts, int most, uint32_t *kept,
-                       uint8_t *kept_cuts, uint8_t *blinded) {
-    int64_t n = 0;
-    for (int64_t k = 0; k < count; k++) {
-        int blind = size_of(groups[k]) + 1 - sizes[groups[k]];
-        if (sizes[groups[k]] == 0 || blind > most) continue;
-        kept[n] = groups[k], kept_cuts[n] = cuts[k], blinded[n++] = (uint8_t)blind;
-    }
-    return n;
-}
-
 static inline uint64_t group_at(const Columns *c, int64_t k) {
     return c->wide ? ((const uint64_t *)c->groups)[k] : ((const uint32_t *)c->groups)[k];
 }

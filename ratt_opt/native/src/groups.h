@@ -48,10 +48,6 @@ typedef struct {
    with, depth of the stack (2 robots + 2). Ends after `steps` or `room` sets; returns how many were written. */
 EXPORTED int64_t list_groups(int robots, const uint64_t *neighbours, const uint64_t *protected_links, int64_t most, Branch stack[],
                              int64_t *position, int64_t steps, int64_t room, uint64_t *groups, uint16_t *cuts);
-/* Keep the groups in which blinding at most `most` robots leaves a set below the threshold, and how many it takes.
-   `sizes`: of the largest such set inside each set, plus one, or 0. Returns how many are kept. */
-EXPORTED int64_t keep_reachable(const uint8_t *sizes, int64_t count, const uint32_t *groups, const uint8_t *cuts, int most, uint32_t *kept,
-                                uint8_t *kept_cuts, uint8_t *blinded);
 /* The column of least reduced cost with each robot, (robots) where it is negative, else -1; returns the least of all. */
 EXPORTED int64_t price(int robots, const Columns *columns, const Duals *duals, int64_t *cheapest);
 /* The columns of a reduced cost of at most `gap`, as many as there is `room` for; returns how many there are. */

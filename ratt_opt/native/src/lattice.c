@@ -1,66 +1,7 @@
 /* Passes over the values of all sets of elements: a set's number has the bits of its elements.
 
    Each function takes a part of the sets, so that Python looks at the clock between two parts. */
-#include <math.h>
-
 #include "lattice.h"
-
-enum { LANES = 32 }; /* ends side by side: one alone would wait for the one before, and is no vector instruction */
-
-static inline double lesser(double a, double b) { return a < b ? a : b; }
-
-static inline double greater(double a, double b) { return a > b ? a : b; }
-
-/* The number of the k-th set without an element. */
-static inline int64_t without(int64_t k, int element) {
-    int64_t low = k & (((int64_t)1 << element) - 1);
-    return (k ^ low) << 1 | low;
-}
-
-/* Lower *low and raise *high to sets[s + step] - sets[s] over s below `count` without the bit `step`, which is less than
-   LANES. Places with that bit take differences that mean nothing, and are left out. */
-static void spread_of_close(const double *sets, int64_t count, int64_t step, double *low, double *high) {
-    double least[LANES], most[LANES];
-    int64_t s = 0;
-    for (int k = 0; k < LANES; k++) least[k] = INFINITY, most[k] = -INFINITY;
-    for (; s + LANES + step <= count; s += LANES)
-        for (int k = 0; k < LANES; k++) {
-            double difference = sets[s + step + k] - sets[s + k];
-            least[k] = lesser(difference, least[k]), most[k] = greater(difference, most[k]);
-        }
-    for (; s < count; s++) {
-        double difference = s & step ? NAN : sets[s + step] - sets[s];
-        *low = lesser(difference, *low), *high = greater(difference, *high);
-    }
-    for (int k = 0; k < LANES; k++)
-        if (!(k & step)) *low = lesser(least[k], *low), *high = greater(most[k], *high);
-}
-
-/* The same of `count` sets and those that are `step` after them; `count` is a multiple of LANES. */
-static void spread_of_far(const double *sets, int64_t count, int64_t step, double *low, double *high) {
-    double least[LANES], most[LANES];
-    for (int k = 0; k < LANES; k++) least[k] = INFINITY, most[k] = -INFINITY;
-    for (int64_t s = 0; s < count; s += LANES)
-        for (int k = 0; k < LANES; k++) {
-            double difference = sets[s + step + k] - sets[s + k];
-            least[k] = lesser(difference, least[k]), most[k] = greater(difference, most[k]);
-        }
-    for (int k = 0; k < LANES; k++) *low = lesser(least[k], *low), *high = greater(most[k], *high);
-}
-
-void marginal_ends(const double *values, int i, int64_t first, int64_t last, double *low, double *high) {
-    int64_t step = (int64_t)1 << i;
-    if (step < LANES) {
-        spread_of_close(values + 2 * first, 2 * (last - first), step, low, high);
-        return;
-    }
-    while (first < last) {
-        int64_t run = step - (first & (step - 1));
-        if (run > last - first) run = last - first;
-        spread_of_far(values + without(first, i), run, step, low, high);
-        first += run;
-    }
-}
 
 void disjoint_slack(const double *values, int64_t first, int64_t last, double *slack, int64_t *sets) {
     for (int64_t all = first; all < last; all++)

@@ -2,9 +2,6 @@
 #pragma once
 #include "sets.h"
 
-/* Lower *low and raise *high to f(S + i) - f(S) over the sets without i of numbers first..last - 1, which are multiples of
-   LANES or those of all sets. */
-EXPORTED void marginal_ends(const double *values, int i, int64_t first, int64_t last, double *low, double *high);
 /* Lower *slack to f(A) + f(B) - f(A + B) of disjoint A, B whose unions are first..last - 1; `sets`: those A and B. */
 EXPORTED void disjoint_slack(const double *values, int64_t first, int64_t last, double *slack, int64_t *sets);
 /* Lower *slack to f(A) + f(B) - f(A | B) of A in first..last - 1 and any B from A on, of `count` sets. */

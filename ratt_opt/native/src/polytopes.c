@@ -86,11 +86,6 @@ static double planar_value(const Team *team, int64_t j, double a, double b, doub
     return team->weights[j] * log(determinant / before);
 }
 
-void planar_values_of_targets(const Team *team, int64_t count, const double *matrices, double *values) {
-    for (int64_t k = 0; k < count * team->targets; k++)
-        values[k] = planar_value(team, k % team->targets, matrices[3 * k], matrices[3 * k + 1], matrices[3 * k + 2]);
-}
-
 void vertex_values(const Team *team, int64_t patterns, const double *starts, const double *vertices, const int64_t *numbers,
                    double *values) {
     int64_t v = 0;
@@ -98,15 +93,6 @@ void vertex_values(const Team *team, int64_t patterns, const double *starts, con
         for (int64_t i = 0; i < numbers[k]; i++, v++)
             values[v] = planar_value(team, k / patterns, starts[3 * k] + vertices[3 * v], starts[3 * k + 1] + vertices[3 * v + 1],
                                      starts[3 * k + 2] + vertices[3 * v + 2]);
-}
-
-void facet_weights(int64_t targets, int64_t rows, const int64_t *first, const double *closeness, const uint64_t *facets, double *weights) {
-    for (int64_t j = 0; j < targets; j++)
-        for (int64_t v = first[j]; v < first[j + 1]; v++)
-            for (uint64_t rest = closeness[v] > 0 ? facets[v] : 0; rest; rest &= rest - 1) {
-                int row = lowest(rest);
-                if (row < rows) weights[j * rows + row] += closeness[v];
-            }
 }
 
 void rest_of_vertices(const Program *p, const double *multipliers, double *rest, double *spare) {

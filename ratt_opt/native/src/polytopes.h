@@ -19,14 +19,9 @@ typedef struct {
    room for `capacity` <= 512 each; numbers (targets, patterns), 0 if the capacity did not suffice. */
 EXPORTED int64_t cut_polytopes(int64_t targets, int64_t patterns, int64_t rows, int64_t capacity, const double *normals,
                                const double *offsets, const double *factors, double *vertices, uint64_t *facets, int64_t *numbers);
-/* Each target's value of information (count, targets, 3). */
-EXPORTED void planar_values_of_targets(const Team *team, int64_t count, const double *matrices, double *values);
-/* The same of starts (targets, patterns, 3) plus each vertex of polytope (j, p). */
+/* Each target's value of the information starts (targets, patterns, 3) plus each vertex of polytope (j, p). */
 EXPORTED void vertex_values(const Team *team, int64_t patterns, const double *starts, const double *vertices, const int64_t *numbers,
                             double *values);
-/* Sum of the closeness of vertices over each facet that they lie on: weights (targets, rows), zero before. */
-EXPORTED void facet_weights(int64_t targets, int64_t rows, const int64_t *first, const double *closeness, const uint64_t *facets,
-                            double *weights);
 /* `rest` (V): the value of each vertex less what the multipliers say; `spare` (patterns). */
 EXPORTED void rest_of_vertices(const Program *p, const double *multipliers, double *rest, double *spare);
 /* The bound of the multipliers, and its smoothed value in *soft; fills `gradient` (targets, 3 + heavies), zero before, and

@@ -68,5 +68,3 @@ EXPORTED int exchange_groups(const Team *team, int groups, int64_t *home, const 
                              double *value);
 /* Go on until all is decided (1), or so many sets were looked at (0). The threshold falls to the value of what is found. */
 EXPORTED int search_disjoint(DisjointSets *d, int64_t work);
-/* The sum of the amounts (robots) of the robots in each set. */
-EXPORTED void sums_of_sets(int64_t count, const uint64_t *masks, const double *amounts, double *sums);

@@ -159,7 +159,7 @@ double value_of(const Team *team, const double *sums) {
     return team->criterion == LARGEST ? team->before_all - total : total;
 }
 
-static void planar_values(const Team *team, int width, const double *sums, const double *offset, double *values, double *product) {
+void planar_values(const Team *team, int width, const double *sums, const double *offset, double *values, double *product) {
     for (int k = 0; k < width; k++) values[k] = 0.0, product[k] = 1.0;
     for (int j = 0; j < team->targets; j++) {
         const double *first = sums + (ptrdiff_t)3 * j * width, *second = first + width, *third = second + width;
@@ -189,28 +189,6 @@ static void planar_values(const Team *team, int width, const double *sums, const
         for (int k = 0; k < width; k++) values[k] = team->before_all - values[k];
 }
 
-void values_of(const Team *team, int width, const double *sums, const double *offset, double *values, double *spare) {
-    if (team->dimension == 2) {
-        planar_values(team, width, sums, offset, values, spare);
-        return;
-    }
-    int entries = entries_of(team);
-    for (int k = 0; k < width; k++) {
-        values[k] = 0.0;
-        for (int j = 0; j < team->targets; j++) {
-            double matrix[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
-            for (int t = 0; t < entries; t++) matrix[t] = sums[((ptrdiff_t)j * entries + t) * width + k] + offset[j * entries + t];
-            if (team->criterion == LARGEST) {
-                values[k] = larger(team, j, matrix, values[k]);
-                continue;
-            }
-            double now = any_criterion(team, matrix), weight = team->weights[j];
-            values[k] += team->criterion == TRACE ? weight * (team->before[j] - now) : weight * (now - team->before[j]);
-        }
-        if (team->criterion == LARGEST) values[k] = team->before_all - values[k];
-    }
-}
-
 void all_values(const Team *team, double *values, double *sums) {
     int width = team->targets * entries_of(team);
     memcpy(sums, team->prior, (size_t)width * sizeof(double));
@@ -224,8 +202,6 @@ void all_values(const Team *team, double *values, double *sums) {
         values[set] = value_of(team, sums + depth * width);
     }
 }
-
-double set_value(const Team *team, const double *sums) { return value_of(team, sums); }
 
 #ifndef SOURCES
 #define SOURCES "unknown"

@@ -39,18 +39,16 @@ static inline void add_information(const Team *team, const double *sums, double 
 }
 
 /* Value of the posterior information `sums` (targets, entries). */
-double value_of(const Team *team, const double *sums);
+EXPORTED double value_of(const Team *team, const double *sums);
 
-/* Values of `width` matrices at once: sums (targets, entries, width), to each of which `offset` (targets, entries) is
-   added; `spare` (width). */
-void values_of(const Team *team, int width, const double *sums, const double *offset, double *values, double *spare);
+/* Values of `width` matrices in the plane at once: sums (targets, entries, width), to each of which `offset` (targets,
+   entries) is added; `product` (width) is spare. */
+void planar_values(const Team *team, int width, const double *sums, const double *offset, double *values, double *product);
 
 /* Fill `before` and `before_all` of a team whose other fields are set. */
 EXPORTED void criteria_before(Team *team, double *before);
 /* Values (1 << robots) of all sets, at most 16 robots; `sums` (robots + 1, targets, entries) is spare. */
 EXPORTED void all_values(const Team *team, double *values, double *sums);
-/* `value_of` for a call from outside. */
-EXPORTED double set_value(const Team *team, const double *sums);
 /* Which sources the library was compiled from. */
 EXPORTED const char *sources(void);
 /* Write for each set of robots of the blocks first..last - 1 its size plus one where it is worth less than the
@@ -61,7 +59,5 @@ EXPORTED const char *sources(void);
    the first b robots; together at most `most`. 1 where memory is short, else 0. */
 EXPORTED int mark_below(const Team *team, double threshold, int64_t first, int64_t last, const uint8_t *outside, const uint8_t *inside,
                         int most, uint8_t *sizes, double *next, int64_t *next_set);
-/* Let every set with `robot` have at least what it has without it. */
-EXPORTED void spread(uint8_t *sizes, int64_t count, int robot);
 /* The level from which sets are not below a threshold, rounding included; infinite where no value is sure to be as high. */
 EXPORTED double level_of_threshold(const Team *team, double threshold);

@@ -26,8 +26,12 @@ static void meet(Visit *v, double value, uint64_t set) {
 
 static void mark_leaves(Visit *v, uint64_t set, const double *sums) {
     double values[1 << LEAF], spare[1 << LEAF];
-    int count = 1 << v->leaf;
-    values_of(v->team, count, v->leaves, sums, values, spare);
+    int count = 1 << v->leaf, width = v->team->targets * entries_of(v->team);
+    if (v->team->dimension == 2) planar_values(v->team, count, v->leaves, sums, values, spare);
+    for (int k = 0; k < count && v->team->dimension != 2; k++) {
+        for (int t = 0; t < width; t++) v->top[t] = sums[t] + v->leaves[t * count + k];
+        values[k] = value_of(v->team, v->top);
+    }
     for (int k = 0; k < count; k++) {
         int below = values[k] < v->threshold;
         v->sizes[set + (uint64_t)k] = below ? (uint8_t)(size_of(set) + size_of((uint64_t)k) + 1) : 0;
@@ -100,12 +104,4 @@ int mark_below(const Team *team, double threshold, int64_t first, int64_t last, 
     *next = v.next, *next_set = v.next_set;
     free(memory);
     return 0;
-}
-
-void spread(uint8_t *sizes, int64_t count, int robot) {
-    int64_t step = (int64_t)1 << robot;
-    for (int64_t start = 0; start < count; start += 2 * step) {
-        uint8_t *without = sizes + start, *with = without + step;
-        for (int64_t k = 0; k < step; k++) with[k] = without[k] > with[k] ? without[k] : with[k];
-    }
 }
