@@ -6,6 +6,7 @@ from ._version import __version__ as __version__
 # == The main job
 from .main_job.bound import bound as bound
 from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
+from .report.map_style import MapStyle as MapStyle
 from .budget import Stop as Stop
 
 # == Problems

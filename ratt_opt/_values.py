@@ -15,9 +15,6 @@ from ratt_opt._validation import readonly
 
 __all__ = ["ByValue", "ReprMixin", "counted", "plain", "shown"]
 
-MOST_SHOWN = 12
-"""Entries of an array that a ``repr`` shows; the rest is counted."""
-
 
 class ByValue:
     """Base of frozen dataclasses (``eq=False, repr=False``) with array fields: equal when all they hold is.
@@ -67,15 +64,19 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
+def _shortened(texts: list[str], most: int = 12) -> str:
+    """Join at most ``most`` texts; the rest is counted."""
+    more = f", ... {len(texts) - most} more" if len(texts) > most else ""
+    return ", ".join(texts[:most]) + more
+
+
 def shown(value: Any) -> str:
-    """A short ``repr``: arrays as lists of at most ``MOST_SHOWN`` entries."""
+    """A short ``repr``: arrays as lists, shortened."""
     if not isinstance(value, np.ndarray):
         return repr(value)
     if value.ndim != 1:
         return f"array of shape {value.shape}"
-    first = ", ".join(map(repr, value[:MOST_SHOWN].tolist()))
-    more = f", ... {value.size - MOST_SHOWN} more" if value.size > MOST_SHOWN else ""
-    return f"[{first}{more}]"
+    return f"[{_shortened(list(map(repr, value.tolist())))}]"
 
 
 class ReprMixin:
@@ -117,8 +118,7 @@ def _brief(value: Any, name: str) -> str:
     if isinstance(value, dict):
         return "; ".join(f"{key}: {_brief(item, key)}" for key, item in value.items())
     if isinstance(value, list):
-        more = f", ... {len(value) - MOST_SHOWN} more" if len(value) > MOST_SHOWN else ""
-        return (", ".join("-".join(map(str, x)) if isinstance(x, list) else str(x) for x in value[:MOST_SHOWN])) + more
+        return _shortened(["-".join(map(str, x)) if isinstance(x, list) else str(x) for x in value])
     if not isinstance(value, float):
         return "none" if value is None else str(value)
     return named_text(name, value, 10)

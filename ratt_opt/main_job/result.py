@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from ratt_opt.report.map_style import MapStyle
 
 __all__ = ["BoundReport", "PlanAssessment"]
 
@@ -148,9 +149,12 @@ class BoundReport(Findings):
         r"""Return the tables that ``ratt-opt bound`` prints as LaTeX, which needs ``\usepackage{booktabs}``."""
         return "\n".join(map(latex_of, report_tables(self)))
 
-    def plot(self) -> Figure:
-        """Return a figure: the recommended plan and its worst attack on a map, beside the worst case of each plan."""
-        return plan_figure(self, picture_of(self.source, self))
+    def plot(self, style: MapStyle | None = None) -> Figure:
+        """Return a figure: the recommended plan and its worst attack on a map, beside the worst case of each plan.
+
+        ``style`` : sizes and limits of the map; those of :class:`ratt_opt.MapStyle` by default
+        """
+        return plan_figure(self, picture_of(self.source, self, style=style))
 
     def _repr_html_(self) -> str:
         return report_view(self)

@@ -17,11 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["bar_ends", "draw_bars"]
 
-CLOSE = 0.5
-"""Share of the bound from which the gap to it is drawn instead of the value: one per cent stays visible."""
-NOTHING = 1e-9
-"""Less than this share of the bound is rounding: no whisker shows it, and it must not fill the axis."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BarRows:
@@ -29,10 +24,14 @@ class BarRows:
 
     ``thick`` : height of a bar; more of it leaves less room for the number.
     ``beyond`` : length of the axis in longest bars, so that the dashed line is inside; more of it shortens the bars.
+    ``close`` : share of the bound from which the gap to it is drawn instead of the value: one per cent stays visible.
+    ``rounding`` : share of the bound; less is rounding: no whisker shows it, and it must not fill the axis.
     """
 
     thick: float = 0.5
     beyond: float = 1.04
+    close: float = 0.5
+    rounding: float = 1e-9
 
 
 ROWS = BarRows()
@@ -41,11 +40,11 @@ ROWS = BarRows()
 def bar_ends(report: Findings) -> tuple[bool, list[tuple[float, float]], float]:
     """Return whether bars show what is missing to the bound, the ends of each planner's bar, and the full length."""
     ends = [(plan.worst_case.lower, plan.worst_case.upper) for plan in report.plans]
-    missing = min(low for low, _ in ends) >= CLOSE * report.upper > 0
+    missing = min(low for low, _ in ends) >= ROWS.close * report.upper > 0
     if missing:
         ends = [(max(report.upper - high, 0.0), max(report.upper - low, 0.0)) for low, high in ends]
     longest = max([high for _, high in ends] + ([] if missing else [report.upper]))
-    return missing, ends, longest if longest > NOTHING * report.upper else max(report.upper, 1.0)
+    return missing, ends, longest if longest > ROWS.rounding * report.upper else max(report.upper, 1.0)
 
 
 def draw_bars(axes: Axes, report: Findings) -> None:
@@ -55,7 +54,7 @@ def draw_bars(axes: Axes, report: Findings) -> None:
     """
     plans = report.plans
     missing, ends, longest = bar_ends(report)
-    least = NOTHING * report.upper
+    least = ROWS.rounding * report.upper
     looks = looks_of([plan.planner for plan in plans])
     for row, (plan, (low, high)) in enumerate(zip(plans, ends, strict=True)):
         look, chosen = looks[plan.planner], plan.planner == report.recommended.planner

@@ -29,19 +29,20 @@ __all__ = [
 
 FIELD_WORDS = "field of view"
 WATCH_WORDS, LOST_WORDS = "robot measures target", "measurement lost to the attack"
-NEAREST_EDGE = 0.12
-"""A field without a reach is drawn up to its farthest target, and at least over this share of the map's diagonal."""
 
 
 def field_of(picture: Picture, i: int) -> tuple[float, float, float]:
-    """Return the sector of robot ``i``: heading [rad], full angle [rad], and the radius of the drawing [m]."""
+    """Return the sector of robot ``i``: heading [rad], full angle [rad], and the radius of the drawing [m].
+
+    A field without a reach is drawn up to its farthest target.
+    """
     assert picture.views is not None
     assert picture.headings is not None
     view = picture.views[i]
     angle = 2 * np.pi if view.angle is None else view.angle
     if view.reach is not None:
         return float(picture.headings[i]), float(angle), view.reach
-    drawn = NEAREST_EDGE * _width(picture)
+    drawn = picture.style.nearest_edge * _width(picture)
     if picture.watched is not None and picture.targets is not None and picture.watched[i].any():
         apart = np.linalg.norm(picture.targets[picture.watched[i]] - picture.places[i], axis=1)
         drawn = max(drawn, 1.05 * float(apart.max()))

@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["heard_figure"]
 
-MOST_CELLS_NAMED = 30
-"""Most robots whose numbers stand beside the table."""
-
 
 def heard_figure(
     problem: Problem, plan: DecentralisedPlan, known: Description, links: LinkLosses | None = None
@@ -88,7 +85,8 @@ def _draw_network(
     label_places(axes, is_layout=known.poses_after is None and known.poses is None)
 
 
-def _draw_table(axes: Axes, problem: Problem, plan: DecentralisedPlan) -> None:
+def _draw_table(axes: Axes, problem: Problem, plan: DecentralisedPlan, most_named: int = 30) -> None:
+    """Draw the table; the numbers of at most ``most_named`` robots stand beside it."""
     n = problem.n_robots
     order = sorted(range(n), key=lambda i: (i not in plan.bait, len(plan.heard[i]), i))
     place = {robot: k for k, robot in enumerate(order)}
@@ -98,7 +96,7 @@ def _draw_table(axes: Axes, problem: Problem, plan: DecentralisedPlan) -> None:
         axes.scatter(x, y, c=SURVIVING, marker="s", s=min(60, 5000 / n**1.4))
     axes.set_xlim(-0.7, n - 0.3)
     axes.set_ylim(n - 0.3, -0.7)
-    if n <= MOST_CELLS_NAMED:
+    if n <= most_named:
         axes.set_xticks(range(n), list(map(str, order)))
         axes.set_yticks(range(n), list(map(str, order)))
     axes.set_xlabel("robot whose choice was heard")

@@ -15,18 +15,10 @@ if TYPE_CHECKING:
     from matplotlib.transforms import BboxBase
 
     from ratt_opt._validation import FloatArray
+    from ratt_opt.report.map_style import MapStyle
     from ratt_opt.report.spots import Box
 
 __all__ = ["Label", "halo", "place_labels"]
-
-MARK = 7.0
-"""Half the width of a robot or target on paper [points]."""
-
-HALO = 2.0
-"""Width of the pale rim of a word [points]."""
-
-LINE = 0.6
-"""Width of the line from a word to a place that it does not touch [points]."""
 
 SIDES = {"left": 0.0, "center": 0.5, "right": 1.0}
 """Share of a word's width that lies left of where it is put."""
@@ -41,7 +33,7 @@ class Label:
     colour: str
 
 
-def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray]) -> None:
+def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray], style: MapStyle) -> None:
     """Write the labels in order; ``marks`` are the places that no word should cover."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -52,12 +44,12 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
     # Files are drawn in the layout in which words are placed; finding it anew for each took longer than the words.
     figure.set_layout_engine("none")
     points = figure.dpi / 72
-    taken = [_square(axes.transData.transform(place), MARK * points) for place in marks]
+    taken = [_square(axes.transData.transform(place), style.mark * points) for place in marks]
     for label in labels:
-        style: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
-        style["path_effects"] = halo()
+        look: dict[str, Any] = {"va": "center", "fontsize": 7, "color": label.colour, "zorder": 8}
+        look["path_effects"] = halo()
         place = float(label.place[0]), float(label.place[1])
-        word = axes.annotate(literal(label.text), place, (0, 0), textcoords="offset points", **style)
+        word = axes.annotate(literal(label.text), place, (0, 0), textcoords="offset points", **look)
         choose_fonts(word)
         at_place = _box(word.get_window_extent(renderer))  # to the right of the place: asked for once, as it takes long
         boxes = [_moved(at_place, x * points, y * points, side) for x, y, side in SPOTS]
@@ -65,16 +57,16 @@ def place_labels(axes: Axes, labels: Sequence[Label], marks: Iterable[FloatArray
         x, y, side = SPOTS[chosen]
         word.set(position=(x, y), ha=side)
         if chosen >= BESIDE:
-            line = {"arrowstyle": "-", "color": label.colour, "linewidth": LINE, "shrinkA": 0, "shrinkB": 0}
+            line = {"arrowstyle": "-", "color": label.colour, "linewidth": style.pointer, "shrinkA": 0, "shrinkB": 0}
             axes.annotate("", place, (x, y), textcoords="offset points", arrowprops=line, zorder=7)
         taken.append(boxes[chosen])
 
 
-def halo() -> list[Any]:
-    """The path effects of words behind which lines may run."""
+def halo(width: float = 2.0) -> list[Any]:
+    """The path effects of words behind which lines may run: a pale rim of that width [points]."""
     from matplotlib.patheffects import withStroke
 
-    return [withStroke(linewidth=HALO, foreground="white", alpha=0.8)]
+    return [withStroke(linewidth=width, foreground="white", alpha=0.8)]
 
 
 def _square(centre: FloatArray, half: float) -> Box:

@@ -16,14 +16,7 @@ if TYPE_CHECKING:
 
     from ratt_opt.report.picture import Picture
 
-__all__ = ["MANY_ROBOTS", "draw_map", "label_places", "name_things"]
-
-MANY_LINKS = 60
-"""Number of links of a kind above which they are drawn fainter."""
-MANY_ROBOTS = 20
-"""Number of robots from which only the best group and attacked robots are drawn one by one, the rest as a density."""
-SPARSE, MOST_DRAWN = 4, 60
-"""unless there are at most this many links a robot and this many robots: a network is read by all of its links."""
+__all__ = ["draw_map", "label_places", "name_things"]
 
 
 def draw_map(axes: Axes, picture: Picture) -> None:
@@ -61,13 +54,13 @@ def name_things(axes: Axes, picture: Picture) -> None:
     names = [Label(text=picture.names[i], place=picture.places[i], colour=INK) for i in drawn if picture.names[i]]
     targets = () if picture.targets is None else picture.targets
     names += [Label(text=picture.target_label(j), place=place, colour=TARGET) for j, place in enumerate(targets)]
-    place_labels(axes, names, [*picture.places[drawn], *targets])
+    place_labels(axes, names, [*picture.places[drawn], *targets], picture.style)
 
 
 def _is_crowded(picture: Picture) -> bool:
-    n_robots = len(picture.places)
-    is_network = n_robots <= MOST_DRAWN and len(picture.links) <= SPARSE * n_robots
-    return n_robots >= MANY_ROBOTS and not is_network
+    n_robots, style = len(picture.places), picture.style
+    is_network = n_robots <= style.drawn_networks and len(picture.links) <= style.links_each * n_robots
+    return n_robots >= style.many_robots and not is_network
 
 
 def _draw_links(axes: Axes, picture: Picture) -> None:
@@ -91,7 +84,7 @@ def _draw_segments(
     from matplotlib.collections import LineCollection
 
     segments = [picture.places[list(link)] for link in links]
-    alpha = 0.55 if len(links) <= MANY_LINKS else 0.55 * (MANY_LINKS / len(links)) ** 0.7
+    alpha = 0.55 * min(picture.style.many_links / len(links), 1.0) ** 0.7
     look: dict[str, Any] = {"colors": colour, "linestyles": [style], "linewidths": width, "alpha": alpha}
     axes.add_collection(LineCollection(segments, **look))
     axes.plot([], [], color=colour, linestyle=style, linewidth=width, label=label)

@@ -1,7 +1,7 @@
 """One look for each planner and each thing on a map, in every figure.
 
-Colours alone stay apart: at least ``LEAST_COLOUR_DISTANCE`` (CIE 1976) under normal vision, protanopia and
-deuteranopia, and ``LEAST_GREY_DISTANCE`` of lightness in grey; markers, hatches and line styles say the same again.
+Colours alone stay apart (``tests/report/test_palette.py``): by 20 (CIE 1976) at least under normal vision, protanopia
+and deuteranopia, and by 10 steps of lightness in grey; markers, hatches and line styles say the same again.
 """
 
 from __future__ import annotations
@@ -26,11 +26,6 @@ __all__ = [
     "looks_of",
     "rgb",
 ]
-
-LEAST_COLOUR_DISTANCE = 20.0
-"""Least distance of two colours of a figure: about nine times a just noticeable one."""
-LEAST_GREY_DISTANCE = 10.0
-"""Lightness steps (of 100) between any two colours of one figure on a grey print."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ratt_opt.report.description import FieldOfView, describe, named
 from ratt_opt.report.layout import robot_places
+from ratt_opt.report.map_style import MapStyle
 
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray
@@ -29,6 +30,7 @@ class Picture:
     (M, 2, 2) covariances of the positions, the latter with the best surviving group's measurements.
     ``views`` : (N,) fields of view after the controls, if a sensor is limited; ``watched`` : (N, M) whether a robot
     measures a target, if not every robot measures all.
+    ``style`` : how it is drawn on paper
     ``groups`` : connected groups left by the attack; ``best`` : the one that performs best.
     """
 
@@ -50,6 +52,7 @@ class Picture:
     attack: Attack
     groups: tuple[frozenset[int], ...]
     best: frozenset[int]
+    style: MapStyle
 
     @property
     def is_weighted(self) -> bool:
@@ -75,7 +78,9 @@ class Picture:
         return frozenset(np.flatnonzero(~self.watched[sorted(self.seeing)].any(axis=0)).tolist())
 
 
-def picture_of(source: object, report: Findings, view: AssessedPlan | None = None) -> Picture:
+def picture_of(
+    source: object, report: Findings, view: AssessedPlan | None = None, style: MapStyle | None = None
+) -> Picture:
     """Put together what :func:`draw_map` draws; ``view``: one of the report's views, by default the worst."""
     plan = report.recommended if view is None else view
     problem, known = report.problem, describe(report.problem, source)
@@ -101,6 +106,7 @@ def picture_of(source: object, report: Findings, view: AssessedPlan | None = Non
         attack=plan.worst_case.attack,
         groups=plan.groups,
         best=next((group for group in plan.groups if plan.best_group and plan.best_group <= group), plan.groups[0]),
+        style=style or MapStyle(),
     )
 
 

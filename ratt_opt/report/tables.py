@@ -34,8 +34,6 @@ __all__ = [
 
 PROVED_OPTIMAL = Fraction("1e-9")
 """A plan is called optimal if at most this share of the best possible value is lost."""
-LONGEST_LINK_LIST = 12
-"""More cut links than this are counted, not listed, in the table (the JSON lists all)."""
 
 
 def report_tables(report: Findings) -> Iterable[Table]:
@@ -275,10 +273,11 @@ def _robots(attack: Attack) -> str:
     return " ".join(map(str, sorted(attack.sensing))) or "none"
 
 
-def _links(attack: Attack) -> str:
+def _links(attack: Attack, most: int = 12) -> str:
+    """The first cut links and the number of more than ``most``; the JSON lists all."""
     links = sorted(attack.links)
-    shown = " ".join(f"{i}-{j}" for i, j in links[:LONGEST_LINK_LIST]) or "none"
-    return f"{shown} ... ({len(links)} in all)" if len(links) > LONGEST_LINK_LIST else shown
+    shown = " ".join(f"{i}-{j}" for i, j in links[:most]) or "none"
+    return f"{shown} ... ({len(links)} in all)" if len(links) > most else shown
 
 
 def _table(title: str, *columns: str) -> Table:

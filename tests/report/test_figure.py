@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from itertools import combinations
 
 import numpy as np
@@ -167,6 +168,8 @@ def test_from_twenty_robots_on_only_what_matters_is_drawn():
     axes = plan_figure(report, picture).axes[0]
     numbered = {int(t.get_text()) for t in axes.texts if t.get_text().isdigit()}
     assert picture.best | picture.attack.sensing <= numbered
+    whole = report.plot(ro.MapStyle(many_robots=25)).axes[0]
+    assert set(map(str, range(24))) <= {t.get_text() for t in whole.texts}
     rest = 24 - len(numbered)
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert (f"density of the other {rest} robots" in labels) == (rest > 0)
@@ -179,6 +182,18 @@ def test_every_robot_and_link_of_a_network_is_drawn():
     axes = plan_figure(report, picture_of(scenario, report)).axes[0]
     assert {int(t.get_text()) for t in axes.texts if t.get_text().isdigit()} == set(range(24))
     assert sum(colours_of(axes).values()) == len(scenario.links) == 72
+
+
+@pytest.mark.parametrize("name", [one.name for one in fields(ro.MapStyle)])
+def test_a_map_is_drawn_with_every_number_at_its_ends(drawn, name):
+    report, _, figure = drawn
+    for value in (0, 1000):
+        axes = report.plot(ro.MapStyle(**{name: value})).axes[0]
+        assert [t.get_text() for t in axes.texts if t.get_text()] == [
+            t.get_text() for t in figure.axes[0].texts if t.get_text()
+        ]
+    with pytest.raises(ro.InputError, match=rf"style\.{name} must be at least 0; got -1"):
+        ro.MapStyle(**{name: -1})
 
 
 @pytest.mark.parametrize(("n_robots", "n_targets", "seed"), [(4, 4, 14), (8, 10, 0), (30, 25, 1)])

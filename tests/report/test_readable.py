@@ -11,7 +11,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.missions.drawing.figures import mission_figure
-from ratt_opt.report.page.map_drawing import BROAD, LETTER, LINE, NARROW, map_svg
+from ratt_opt.report.page.map_drawing import SIZES, PageMap, map_svg
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.spots import best_spot
 from tests.report.browser import opened
@@ -38,20 +38,20 @@ def overlap(a, b) -> float:
     return width * height if width > 0 and height > 0 else 0.0
 
 
-def word_boxes(svg: str) -> list[tuple[float, float, float, float]]:
+def word_boxes(svg: str, size: PageMap) -> list[tuple[float, float, float, float]]:
     found = re.findall(r'<text x="([-\d.]+)" y="([-\d.]+)" class="small">([^<]+)</text>', svg)
-    return [(float(x), float(y) - LINE, float(x) + LETTER * len(text), float(y)) for x, y, text in found]
+    return [(float(x), float(y) - size.line, float(x) + size.letter * len(text), float(y)) for x, y, text in found]
 
 
 def test_words_of_a_page_do_not_overlap(reports) -> None:
     for report in reports:
         broad, narrow = map_svg(picture_of(report.source, report), report, report.recommended).split("</svg>")[:2]
-        for svg, size in ((broad, BROAD), (narrow, NARROW)):
-            words = word_boxes(svg)
+        for svg, size in zip((broad, narrow), SIZES.values(), strict=True):
+            words = word_boxes(svg, size)
             assert len(words) >= 10  # every target's number, and the length of the scale
             shared = [overlap(a, b) for a, b in combinations(words, 2)]
-            assert sum(area > 1 for area in shared) <= (0 if size == BROAD else 2)
-            assert all(box[0] >= 0 and box[2] <= size[0] for box in words)
+            assert sum(area > 1 for area in shared) <= (0 if svg is broad else 2)
+            assert all(box[0] >= 0 and box[2] <= size.width for box in words)
 
 
 def test_words_of_a_figure_do_not_overlap(reports) -> None:

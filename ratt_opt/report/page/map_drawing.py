@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -20,30 +21,45 @@ if TYPE_CHECKING:
     from ratt_opt.report.picture import Picture
     from ratt_opt.report.spots import Box
 
-__all__ = ["legend_html", "map_svg"]
+__all__ = ["SIZES", "PageMap", "legend_html", "map_svg"]
 
-BROAD, NARROW, MARGIN = (800.0, 560.0), (390.0, 460.0), 40.0
-"""Width and height of a drawing for desks and of one for telephones, on which words would be too small."""
-MARK = 11.0
-"""Half the width of a robot or target."""
-LETTER, LINE, BELOW, SPREAD = 6.8, 14.0, 3.5, 1.3
-"""Sizes of words: width of a letter, height of a line, space below its foot, and offsets over those on paper."""
-MOST_LINKS = 400
-"""More links of groups than this are not drawn: they would be one blot, and make the page large. Cut ones are."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PageMap:
+    """Sizes of a map on a page, in pixels.
+
+    ``mark`` : half the width of a robot or target
+    ``letter``, ``line``, ``foot`` : of words, the width of a letter, the height of a line, the space below its foot
+    ``spread`` : distance of a word from its place over that on paper
+    ``most_links`` : more links of groups are not drawn: they would be one blot, and make the page large. Cut ones are
+    """
+
+    width: float
+    height: float
+    margin: float = 40.0
+    mark: float = 11.0
+    letter: float = 6.8
+    line: float = 14.0
+    foot: float = 3.5
+    spread: float = 1.3
+    most_links: int = 400
+
+
+SIZES = {"broad": PageMap(width=800, height=560), "narrow": PageMap(width=390, height=460)}
+"""Drawings for desks and for telephones, on which the words of the other would be too small."""
 
 
 def map_svg(picture: Picture, report: Findings, view: AssessedPlan) -> str:
     """Return the map drawn twice, of which the page shows one; lengths are in proportion, north is up."""
-    sizes = {"broad": BROAD, "narrow": NARROW}
-    return "".join(_drawing(picture, report, view, size, kind) for kind, size in sizes.items())
+    return "".join(_drawing(picture, report, view, size, kind) for kind, size in SIZES.items())
 
 
-def _drawing(picture: Picture, report: Findings, view: AssessedPlan, size: tuple[float, float], kind: str) -> str:
+def _drawing(picture: Picture, report: Findings, view: AssessedPlan, size: PageMap, kind: str) -> str:
     place = _frame(picture, size)
     at = [place(x) for x in picture.places]
     parts = [
         *_fields(picture, at, place),
-        *_links(picture, at),
+        *_links(picture, at, size.most_links),
         *_watching(picture, at, place),
         *_targets(picture, place),
         *_robots(picture, at, report, view),
@@ -51,7 +67,7 @@ def _drawing(picture: Picture, report: Findings, view: AssessedPlan, size: tuple
         *(() if picture.is_layout else _scale_bar(place)),
     ]
     label = escape(f"Map of {len(at)} robots under attack; tab through robots and targets for their details")
-    box = f'viewBox="0 0 {size[0]:g} {size[1]:g}" role="group" aria-label="{label}"'
+    box = f'viewBox="0 0 {size.width:g} {size.height:g}" role="group" aria-label="{label}"'
     return f'<svg class="map {kind}" {box}>{"".join(parts)}</svg>'
 
 
@@ -103,20 +119,20 @@ def _target_words(pictures: Sequence[Picture]) -> str:
 class _Frame:
     """Metres to places on the page."""
 
-    def __init__(self, points: FloatArray, size: tuple[float, float]) -> None:
+    def __init__(self, points: FloatArray, size: PageMap) -> None:
         self.low, self.size = points.min(axis=0), size
         span = np.maximum(points.max(axis=0) - self.low, 1e-9)
-        self.scale = float(min((size[0] - 2 * MARGIN) / span[0], (size[1] - 2 * MARGIN) / span[1]))
+        self.scale = float(np.min((np.array([size.width, size.height]) - 2 * size.margin) / span))
         if float(span.max()) <= 1e-9:
             self.scale = 1.0
-        self.rest = (np.array(size) - self.scale * span) / 2
+        self.rest = (np.array([size.width, size.height]) - self.scale * span) / 2
 
     def __call__(self, point: FloatArray) -> tuple[float, float]:
         x, y = self.scale * (point - self.low) + self.rest
-        return float(x), self.size[1] - float(y)
+        return float(x), self.size.height - float(y)
 
 
-def _frame(picture: Picture, size: tuple[float, float]) -> _Frame:
+def _frame(picture: Picture, size: PageMap) -> _Frame:
     """Find the frame around all places, and around the ellipses of targets."""
     points = [picture.places]
     if picture.targets is not None:
@@ -158,9 +174,9 @@ def _watching(picture: Picture, at: list[tuple[float, float]], place: _Frame) ->
             yield f'<line x1="{x:.1f}" y1="{y:.1f}" x2="{u:.1f}" y2="{v:.1f}" class="{kind}"/>'
 
 
-def _links(picture: Picture, at: list[tuple[float, float]]) -> Iterator[str]:
+def _links(picture: Picture, at: list[tuple[float, float]], most: int) -> Iterator[str]:
     kept, cut = sorted(picture.links - picture.attack.links), sorted(picture.attack.links)
-    shown = kept if len(kept) <= MOST_LINKS else sorted(picture.protected_links)
+    shown = kept if len(kept) <= most else sorted(picture.protected_links)
     for kind, links in (("link", shown), ("cut", cut)):
         for i, j in links:
             (x, y), (u, v) = at[i], at[j]
@@ -227,34 +243,35 @@ def _words(picture: Picture, at: list[tuple[float, float]], place: _Frame) -> It
     words: list[tuple[tuple[str, ...], tuple[float, float]]]
     words = [((picture.target_label(j), f"T{j}"), spot) for j, spot in enumerate(targets)]
     words += [((name,), spot) for name, spot in zip(picture.names, at, strict=True) if name]
-    taken: list[Box] = [(x - MARK, y - MARK, x + MARK, y + MARK) for x, y in (*at, *targets)]
-    taken += [(at[i][0] - 2 * MARK, at[i][1] - MARK, *at[i]) for i in picture.attack.sensing]  # their numbers
-    inside = (0.0, 0.0, *place.size)
+    size, mark = place.size, place.size.mark
+    taken: list[Box] = [(x - mark, y - mark, x + mark, y + mark) for x, y in (*at, *targets)]
+    taken += [(at[i][0] - 2 * mark, at[i][1] - mark, *at[i]) for i in picture.attack.sensing]  # their numbers
+    inside = (0.0, 0.0, size.width, size.height)
     for texts, (x, y) in words:
         for text in texts:
-            boxes = [_box(text, x, y, spot) for spot in SPOTS]
+            boxes = [_box(text, x, y, spot, size) for spot in SPOTS]
             chosen, covered = best_spot(boxes, taken, inside)
             if covered <= 0 or text is not texts[0]:
                 taken.append(boxes[chosen])
                 left, _, _, bottom = boxes[chosen]
-                yield f'<text x="{left:.1f}" y="{bottom - BELOW:.1f}" class="small">{escape(text)}</text>'
+                yield f'<text x="{left:.1f}" y="{bottom - size.foot:.1f}" class="small">{escape(text)}</text>'
                 break
 
 
-def _box(text: str, x: float, y: float, spot: tuple[float, float, str]) -> Box:
+def _box(text: str, x: float, y: float, spot: tuple[float, float, str], size: PageMap) -> Box:
     """Return the box of a word in a spot beside its place."""
     dx, dy, side = spot
-    width = LETTER * len(text)
-    left = x + SPREAD * dx - {"left": 0.0, "center": width / 2, "right": width}[side]
-    middle = y - SPREAD * dy
-    return left, middle - LINE / 2, left + width, middle + LINE / 2
+    width = size.letter * len(text)
+    left = x + size.spread * dx - {"left": 0.0, "center": width / 2, "right": width}[side]
+    middle = y - size.spread * dy
+    return left, middle - size.line / 2, left + width, middle + size.line / 2
 
 
 def _scale_bar(place: _Frame) -> Iterator[str]:
     """A length in metres in the lower left corner."""
-    longest = place.size[0] / 4 / place.scale
+    longest = place.size.width / 4 / place.scale
     power = 10.0 ** np.floor(np.log10(longest))
     length = float(power * max(step for step in (1, 2, 5) if step * power <= longest))
-    x, y = 12.0, place.size[1] - 12.0
+    x, y = 12.0, place.size.height - 12.0
     yield f'<path d="M{x:g} {y - 5:g}v5h{length * place.scale:.1f}v-5" class="scale"/>'
     yield f'<text x="{x + 4:g}" y="{y - 6:g}" class="small">{length:g} m</text>'

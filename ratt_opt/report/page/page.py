@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["report_page"]
 
 GUARANTEE_COLUMNS = ("guarantee", "share", "needs", "proved at")
-LONG = 5
-"""Letters of a unit that is put into brackets: it is words, not a symbol."""
 VIEW_TITLES = {
     "worst": "worst attack",
     "next worst": "next worst: spares a part of the worst attack",
@@ -102,7 +100,7 @@ def _map_section(report: Findings) -> Iterator[str]:
 
 def _with_unit(value: str, report: Findings) -> str:
     """A value in words with its unit, in brackets if that is words and not a symbol."""
-    unit = report.unit if len(report.unit) < LONG else f"[{report.unit}]"
+    unit = f"[{report.unit}]" if " " in report.unit else report.unit
     return f"{value} {unit}".rstrip()
 
 
