@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from ratt_opt.problem import Problem
     from ratt_opt.setfunctions.decomposition import Decomposition
 
-__all__ = ["WHOLE", "PlanColumns", "PlanNode", "Region"]
+__all__ = ["WHOLE", "CountedRegion", "PlanColumns", "PlanNode"]
 
 WHOLE = 1e-6
 """Distance from a whole number up to which a number of robots counts as whole."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Region:
+class CountedRegion:
     """Columns (columns,) of which at most ``most`` robots choose one, or of which more do."""
 
     columns: BoolArray
@@ -36,8 +36,8 @@ class PlanNode:
 
     lower: FloatArray
     upper: FloatArray
-    within: tuple[Region, ...] = ()
-    beyond: tuple[Region, ...] = ()
+    within: tuple[CountedRegion, ...] = ()
+    beyond: tuple[CountedRegion, ...] = ()
     is_first: bool = False
 
 

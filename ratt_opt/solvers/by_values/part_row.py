@@ -10,7 +10,7 @@ from ratt_opt.bounds.cuts import ROUNDING
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
-    from ratt_opt.solvers.by_values.columns import Region
+    from ratt_opt.solvers.by_values.columns import CountedRegion
 
 __all__ = ["NUMBER", "SUM", "CombinedRow", "PartRow", "combine", "down_to_multiple"]
 
@@ -28,7 +28,7 @@ class PartRow(NamedTuple):
 
     constant: float
     scores: FloatArray
-    regions: tuple[Region, ...] = ()
+    regions: tuple[CountedRegion, ...] = ()
     part: int = WHOLE
 
 

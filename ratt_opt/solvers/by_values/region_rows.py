@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ratt_opt.bounds.cuts import ROUNDING
-from ratt_opt.solvers.by_values.columns import Region
+from ratt_opt.solvers.by_values.columns import CountedRegion
 from ratt_opt.solvers.by_values.mean_losses import MeanLosses
 from ratt_opt.solvers.by_values.part_row import NUMBER, SUM, PartRow, combine, down_to_multiple
 from ratt_opt.solvers.by_values.regions import RegionChoice
@@ -39,7 +39,7 @@ class _Wiped(NamedTuple):
 
     kept: BoolArray
     robots: int
-    regions: tuple[Region, ...]
+    regions: tuple[CountedRegion, ...]
 
 
 class RegionRows:
@@ -59,7 +59,7 @@ class RegionRows:
         robots, lost = problem.n_robots, problem.threat.n_blinded
         self._means = MeanLosses(utility, robots, lost, params.regions.block)
         self._choice = RegionChoice(self._means, params.regions)
-        self._single = [Region(one, 1) for one in np.eye(self._n, dtype=np.bool_)]
+        self._single = [CountedRegion(one, 1) for one in np.eye(self._n, dtype=np.bool_)]
         # The last level is the number of robots by which regions are violated: a plan pays with all that there is.
         costs = np.append(np.zeros(self._parts), float(utility.max(axis=1, initial=0.0).sum()))
         self._program = NodeProgram(self._n, columns.of_kind, None, columns.sizes, costs)
@@ -190,5 +190,5 @@ class RegionRows:
         ]
 
 
-def _is_single(region: Region, node: PlanNode) -> bool:
+def _is_single(region: CountedRegion, node: PlanNode) -> bool:
     return int(region.columns.sum()) == 1 and bool(node.upper[region.columns] <= 1)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.by_values.columns import WHOLE, Region
+from ratt_opt.solvers.by_values.columns import WHOLE, CountedRegion
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray, IntArray
@@ -33,7 +33,7 @@ class RegionChoice:
         self._means, self._params = means, params
         self._near: dict[int, IntArray] = {}
 
-    def at(self, node: PlanNode, point: FloatArray, level: float, goal: float) -> Region | None:
+    def at(self, node: PlanNode, point: FloatArray, level: float, goal: float) -> CountedRegion | None:
         """The region whose both sides promise most at a fractional plan (columns,); ``None`` if none promises enough.
 
         ``level`` : of the plan under the rows known; ``goal`` : the best plan's
@@ -50,10 +50,10 @@ class RegionChoice:
         best = int(promise.argmax())
         return regions[best] if promise[best] > self._params.least * (level - goal) else None
 
-    def _left(self, regions: list[Region], node: PlanNode, point: FloatArray) -> FloatArray:
+    def _left(self, regions: list[CountedRegion], node: PlanNode, point: FloatArray) -> FloatArray:
         """(K,) values of a fractional plan if each region is blinded, with another one if that leaves less."""
         lost, others = self._means.lost, [one for one in node.within if one.most <= self._means.lost]
-        pairs: list[tuple[int, Region | None]] = [(k, None) for k in range(len(regions))]
+        pairs: list[tuple[int, CountedRegion | None]] = [(k, None) for k in range(len(regions))]
         pairs += [(k, one) for k in range(len(regions)) for one in others if regions[k].most + one.most <= lost]
         kept = np.array([~(regions[k].columns if o is None else regions[k].columns | o.columns) for k, o in pairs])
         wiped = np.array([regions[k].most + (0 if o is None else o.most) for k, o in pairs])
@@ -62,9 +62,9 @@ class RegionChoice:
         np.minimum.at(left, [k for k, _ in pairs], values)
         return left
 
-    def _balls(self, point: FloatArray) -> list[Region]:
+    def _balls(self, point: FloatArray) -> list[CountedRegion]:
         """Balls that hold about as few robots as may be lost; one for each set of used columns and number of robots."""
-        found: dict[tuple[bytes, int], Region] = {}
+        found: dict[tuple[bytes, int], CountedRegion] = {}
         for centre in np.flatnonzero(point > 0).tolist():
             if centre not in self._near:
                 self._near[centre] = self._means.nearest(centre)
@@ -76,11 +76,13 @@ class RegionChoice:
                     columns = np.zeros(len(point), dtype=np.bool_)
                     columns[near[:count]] = True
                     if columns.any() and not columns.all():
-                        found.setdefault((np.packbits(columns & (point > 0)).tobytes(), most), Region(columns, most))
+                        found.setdefault(
+                            (np.packbits(columns & (point > 0)).tobytes(), most), CountedRegion(columns, most)
+                        )
         return list(found.values())
 
 
-def _is_known(region: Region, node: PlanNode) -> bool:
+def _is_known(region: CountedRegion, node: PlanNode) -> bool:
     """Tell whether a node's regions decide it: few choose in one around it, or more in one inside."""
     fewer = any(one.most <= region.most and not (region.columns & ~one.columns).any() for one in node.within)
     return fewer or any(one.most >= region.most and not (one.columns & ~region.columns).any() for one in node.beyond)
