@@ -32,6 +32,17 @@ def _processes_hear_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
+@pytest.fixture
+def exact_balls() -> Iterator[None]:
+    """Differences of balls, and comparisons with floats, at the digits of :mod:`tests.exact_values`."""
+    from flint import ctx
+
+    from tests.exact_values import DIGITS
+
+    with ctx.workdps(DIGITS):
+        yield
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--whole", action="store_true", help="run the whole suite, not only the short tier")
 

@@ -280,19 +280,9 @@ def problems(n_robots=None, **options):
     return drawn(random_problem, n_robots, **options)
 
 
-def graphs(n_robots):
-    """Graphs on ``0..n_robots-1``."""
-    return drawn(random_graph, n_robots)
-
-
 def monotone_tables(n):
     """Values of normalised non-decreasing set functions of ``n`` elements, with ties."""
     return drawn(monotone_table, n)
-
-
-def objectives(n_elements, kind=None):
-    """Objectives over ``n_elements``."""
-    return drawn(random_objective, n_elements, kind)
 
 
 @st.composite

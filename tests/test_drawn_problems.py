@@ -1,6 +1,5 @@
 """The headline claims on problems drawn by Hypothesis: round numbers, ties, useless robots, any graph and budget."""
 
-import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
@@ -69,9 +68,3 @@ def test_ratt_keeps_what_the_guarantees_promise(problem):
     c = ro.total_curvature(problem.objective, problem.robot)
     promised = ro.pattern_free_bound(c=min(max(c.upper, 0.0), 1.0)) * brute_force_optimum(problem)
     assert kept >= promised - 1e-9 * scale_of(problem)
-
-
-def test_drawn_and_seeded_problems_come_from_one_builder():
-    from tests.strategies import random_problem
-
-    assert isinstance(random_problem(np.random.default_rng(0)), ro.Problem)

@@ -16,7 +16,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.graph import survivor_sizes
-from tests.strategies import information_data
+from tests.strategies import Opaque, information_data
 
 ROWS = {
     "attack_survey": lambda c, t: ro.attack_survey(c.problem, c.plan, time_limit=t),
@@ -240,20 +240,6 @@ def test_what_is_not_looked_at_in_between_is_not_begun():
     ro.solve_maxmin(problem, time_limit=0.3)  # loads
     assert ro.smallest_largest_group(graph, 18, time_limit=0.05).lower >= 1
     assert ro.solve_maxmin(problem, time_limit=0.3).lower > 0
-
-
-class Opaque(ro.SetFunction):
-    """A function of which only values are known."""
-
-    def __init__(self, f):
-        self._f = f
-
-    @property
-    def n(self):
-        return self._f.n
-
-    def evaluate(self, membership):
-        return self._f.evaluate(membership)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.65, 0.8, 0.95])

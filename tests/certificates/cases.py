@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from itertools import product
 
 import networkx as nx
 import numpy as np
@@ -80,8 +79,3 @@ def problem_of(document) -> Problem:
         frozenset(record["protected_robots"]),
         frozenset(map(tuple, record["protected_links"])),
     )
-
-
-def all_plans(problem: Problem):
-    """Every plan."""
-    return product(*(c.tolist() for c in problem.choices))

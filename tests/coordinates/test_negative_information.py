@@ -6,20 +6,16 @@ import warnings
 
 import numpy as np
 import pytest
-from flint import arb, ctx
+from flint import arb
 
 import ratt_opt as ro
-from tests.exact_values import DIGITS, ExactValues, holds
+from tests.exact_values import ExactValues, holds
 from tests.strategies import OBJECTIVES
+
+pytestmark = pytest.mark.usefixtures("exact_balls")
 
 DEFECTS = (0.0, 1e-16, 1e-13, 1e-11, 0.9e-9)
 """Most negative eigenvalues, as a share of the largest."""
-
-
-@pytest.fixture(autouse=True)
-def _exact_balls():
-    with ctx.workdps(DIGITS):
-        yield
 
 
 def drawn_problem(seed):

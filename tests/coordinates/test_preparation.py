@@ -8,23 +8,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flint import ctx
 
 import ratt_opt as ro
 from ratt_opt.budget import Budget
 from ratt_opt.coordinates.preparation import prepared, restored
-from tests.exact_values import DIGITS, ExactValues, holds
+from tests.exact_values import ExactValues, holds
 from tests.strategies import OBJECTIVES
+
+pytestmark = pytest.mark.usefixtures("exact_balls")
 
 PLAN = np.array([0, 2, 4, 6])
 TIGHT = 1e-6
 """Widest bracket, as a share of the plan's value without attacks: rounding of ten digits, no more."""
-
-
-@pytest.fixture(autouse=True)
-def _exact_balls():
-    with ctx.workdps(DIGITS):
-        yield
 
 
 def tracks(seed, kind="trace", digits=9):

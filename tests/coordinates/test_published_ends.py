@@ -7,23 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flint import ctx
 
 import ratt_opt as ro
 from ratt_opt.coordinates.preparation import prepared
 from ratt_opt.coordinates.unit_prior import with_unit_prior
-from tests.exact_values import DIGITS, ExactValues, holds
+from tests.exact_values import ExactValues, holds
 from tests.strategies import OBJECTIVES
+
+pytestmark = pytest.mark.usefixtures("exact_balls")
 
 KINDS = ("trace", "logdet", "maxeig")
 CONDITIONS = (0, 3, 6, 9, 12, 14)
-
-
-@pytest.fixture(autouse=True)
-def _exact_balls():
-    """Differences of balls, and comparisons with floats, at the digits of the balls."""
-    with ctx.workdps(DIGITS):
-        yield
 
 
 def spread_prior(rng, d, digits):

@@ -6,17 +6,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from flint import arb, ctx
+from flint import arb
 
 import ratt_opt as ro
-from tests.exact_values import DIGITS, ExactValues
+from tests.exact_values import ExactValues
 from tests.strategies import OBJECTIVES
 
-
-@pytest.fixture(autouse=True)
-def _exact_balls():
-    with ctx.workdps(DIGITS):
-        yield
+pytestmark = pytest.mark.usefixtures("exact_balls")
 
 
 class Covered(ro.SetFunction):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from itertools import combinations
 
 import numpy as np
 import pytest
@@ -116,19 +115,3 @@ def test_where_everybody_sees_everything_nothing_is_added():
     page = report_page(report)
     assert 'class="watch' not in page
     assert 'class="field ' not in page
-
-
-@pytest.mark.parametrize(("n_robots", "reach"), [(6, 40.0), (20, 30.0)])
-def test_no_text_leaves_the_figure_or_covers_another(n_robots, reach):
-    scenario = ro.limited_view_scenario(
-        n_robots, n_robots, alpha_s=n_robots // 4, alpha_c=n_robots // 2, seed=0, reach=reach, communication_range=45
-    )
-    report = ro.bound(scenario, time_limit=0.5)
-    figure = plan_figure(report, picture_of(scenario, report))
-    figure.draw_without_rendering()
-    texts = [figure._suptitle, figure.axes[1]._right_title, figure.axes[1].xaxis.label, *figure.axes[1].texts]
-    texts += [*figure.axes[1].get_yticklabels(), *figure.axes[0].get_legend().get_texts()]
-    boxes = [text.get_window_extent() for text in texts if text.get_text()]
-    assert all(figure.bbox.x0 <= box.x0 <= box.x1 <= figure.bbox.x1 for box in boxes)
-    assert all(figure.bbox.y0 <= box.y0 <= box.y1 <= figure.bbox.y1 for box in boxes)
-    assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))

@@ -196,20 +196,21 @@ def test_a_map_is_drawn_with_every_number_at_its_ends(drawn, name):
         ro.MapStyle(**{name: -1})
 
 
-@pytest.mark.parametrize(("n_robots", "n_targets", "seed"), [(4, 4, 14), (8, 10, 0), (30, 25, 1)])
-def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed):
-    scenario = ro.random_scenario(n_robots, n_targets, alpha_s=n_robots // 4, alpha_c=n_robots - 1, seed=seed)
+@pytest.mark.parametrize(
+    ("n_robots", "n_targets", "seed", "reach"),
+    [(4, 4, 14, None), (8, 10, 0, None), (30, 25, 1, None), (6, 6, 0, 40.0), (20, 20, 0, 30.0)],
+)
+def test_no_text_leaves_the_figure_or_covers_another(n_robots, n_targets, seed, reach):
+    """Everybody sees everything, or sectors of such a reach."""
+    team = ro.limited_view_scenario if reach else ro.random_scenario
+    more = {"alpha_c": n_robots // 2, "reach": reach, "communication_range": 45} if reach else {"alpha_c": n_robots - 1}
+    scenario = team(n_robots, n_targets, alpha_s=n_robots // 4, seed=seed, **more)
     report = ro.bound(scenario, time_limit=1.0)
     figure = plan_figure(report, picture_of(scenario, report))
     figure.draw_without_rendering()
-    texts = [
-        figure._suptitle,
-        figure.axes[1].title,
-        figure.axes[1]._right_title,
-        figure.axes[1].xaxis.label,
-        *figure.axes[1].texts,
-    ]
-    texts += [*figure.axes[1].get_yticklabels(), *figure.axes[0].get_legend().get_texts()]
+    left, bars = figure.axes
+    texts = [figure._suptitle, bars.title, bars._right_title, bars.xaxis.label, *bars.texts]
+    texts += [*bars.get_yticklabels(), *left.get_legend().get_texts()]
     boxes = [text.get_window_extent() for text in texts if text is not None and text.get_text()]
     for box in boxes:
         assert figure.bbox.x0 <= box.x0 <= box.x1 <= figure.bbox.x1

@@ -9,17 +9,12 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.studies import MISSION_METRICS, Case, Seeds, Study, SweepError, mission_study, run
+from tests.afternoon import nearest
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ratt_opt.studies.cases import Cell
-
-
-def nearest(problem: ro.Problem, world: ro.PlannerWorld) -> list[int]:
-    """Drive to the nearest target."""
-    apart = np.linalg.norm(world.ends[:, None, :2] - world.targets, axis=-1).min(axis=1)
-    return [int(choice[np.argmin(apart[choice])]) for choice in problem.choices]
 
 
 TEAM = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0)

@@ -55,7 +55,8 @@ def check(problem, elements, k, candidates=None):
         assert brute_force_worst_case(choose(problem, best.links), elements) == pytest.approx(truth, rel=1e-9, abs=1e-9)
         before = brute_force_worst_case(problem, elements)
         assert best.before.upper == pytest.approx(before, rel=1e-9, abs=rounding)
-        assert best.gain_upper - best.gain_lower <= 4 * rounding + 2e-9 * abs(truth)
+        for gain in (best.gain_lower, best.gain_upper):
+            assert gain == pytest.approx(truth - before, rel=1e-9, abs=4 * rounding + 2e-9 * abs(truth))
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -14,6 +14,7 @@ from scipy.stats import chi2
 
 import ratt_opt as ro
 from ratt_opt import Attack, Gate, InputError, Measurement, MissionModel, Tracker, TrackerState, random_scenario
+from tests.afternoon import nearest
 from tests.missions import numpy_filter
 
 STILL = ((0.0, 0.0),)
@@ -223,12 +224,6 @@ def test_a_planner_that_fails_costs_no_plan(limit, error) -> None:
     assert problem.check_plan(plan.elements).shape == (4,)
     with pytest.raises(type(error) if error else InputError):
         Tracker(team, planner=planner, time_limit=limit, strict=True).step()
-
-
-def nearest(problem, world):
-    """Fly to the nearest target."""
-    apart = np.linalg.norm(world.ends[:, None, :2] - world.targets, axis=-1).min(axis=1)
-    return [choice[np.argmin(apart[choice])] for choice in problem.choices]
 
 
 def test_planners_see_the_same_world_everywhere() -> None:

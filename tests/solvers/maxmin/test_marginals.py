@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
@@ -11,11 +10,9 @@ import pytest
 from flint import fmpq, fmpq_mat
 
 from ratt_opt import (
-    FileFormatError,
     LogDetObjective,
     MaxMinResult,
     Problem,
-    ProofError,
     certify,
     limited_view_scenario,
     solve_maxmin,
@@ -134,31 +131,6 @@ def is_positive(matrix: fmpq_mat) -> bool:
 
 def exact(matrix: np.ndarray) -> fmpq_mat:
     return fmpq_mat([[fmpq(*float(x).as_integer_ratio()) for x in row] for row in matrix])
-
-
-@pytest.fixture(scope="module")
-def documents(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[float, dict[str, Any]]]:
-    """Certificates by marginal gains alone, and what the best plan is worth."""
-    path, made = tmp_path_factory.mktemp("marginals") / "c.json", []
-    with pytest.MonkeyPatch.context() as patch:
-        go(patch, MARGINALS_ALONE)
-        for seed in range(8):
-            links = 1 if seed % 2 else 3
-            drawn = limited_view_scenario(4, 5, alpha_s=1 + seed % 2, alpha_c=links, seed=seed, view=57.0)
-            problem = drawn.problem("logdet")
-            found = solve_maxmin(problem)
-            if by_marginals(found) and len(found.proof.tree) > 3:
-                certify(problem, found, path)
-                made.append((found.lower, json.loads(path.read_text(encoding="utf-8"))))
-    assert len(made) >= 5
-    return made
-
-
-def rejected(document: dict[str, Any], path: Path) -> str:
-    path.write_text(json.dumps(document), encoding="utf-8")
-    with pytest.raises((ProofError, FileFormatError)) as caught:
-        verify_certificate(path)
-    return str(caught.value)
 
 
 def test_ten_robots_with_log_det_close(tmp_path: Path):

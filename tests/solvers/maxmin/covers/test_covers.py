@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from ratt_opt import (
-    FileFormatError,
-    MaxMinResult,
     Problem,
-    ProofError,
     certify,
     limited_view_scenario,
     solve_maxmin,
-    verify_certificate,
     worst_case_attack,
 )
 from ratt_opt.solvers.maxmin.covers.pool import cover_bound
@@ -123,29 +118,6 @@ def test_a_plan_that_fails_a_cover_is_worth_no_more_than_its_bound(kind: str):
             failing += len(own)
             assert max(own, default=-np.inf) <= bound + 1e-12 * max(top, 1.0)
     assert failing > 1000
-
-
-def closed_by_covers() -> tuple[Problem, MaxMinResult]:
-    for seed in range(10):
-        problem = sparse_problem(np.random.default_rng([seed, 2]), "trace")
-        found = solve_maxmin(problem)
-        if found.proof is not None and len(found.proof.covers) > 1:
-            return problem, found
-    raise AssertionError("no problem was closed by covers")
-
-
-@pytest.fixture
-def document(tmp_path: Path) -> dict[str, Any]:
-    problem, found = closed_by_covers()
-    certify(problem, found, tmp_path / "c.json")
-    return json.loads((tmp_path / "c.json").read_text(encoding="utf-8"))
-
-
-def rejected(document: dict[str, Any], path: Path) -> str:
-    path.write_text(json.dumps(document), encoding="utf-8")
-    with pytest.raises((ProofError, FileFormatError)) as caught:
-        verify_certificate(path)
-    return str(caught.value)
 
 
 def test_covers_close_what_concave_relaxations_leave_open(tmp_path: Path):
