@@ -205,6 +205,7 @@ from .setfunctions.properties import (
     find_modularity_violation as find_modularity_violation,
     find_subadditivity_violation as find_subadditivity_violation,
 )
+from .setfunctions.property_params import PropertyParams as PropertyParams
 from .setfunctions.sampling import Violation as Violation, NotFound as NotFound
 
 # == Curvatures and ratios

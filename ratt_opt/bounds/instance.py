@@ -10,8 +10,9 @@ from ratt_opt.bounds.group_size import achievable_group_size, strongest_robots
 from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Guarantee
 from ratt_opt.bounds.params import DEFAULT
 from ratt_opt.budget import Budget, OutOfBudget
-from ratt_opt.curvatures.curvature import SECONDS, total_curvature
+from ratt_opt.curvatures.curvature import total_curvature
 from ratt_opt.curvatures.domains import domain_of, over_subsets
+from ratt_opt.curvatures.params import DEFAULT as CURVATURE
 from ratt_opt.errors import InputError
 from ratt_opt.problem import check_problem
 
@@ -34,7 +35,7 @@ def instance_bound(
     *,
     k: Curvature | None = None,
     c: Curvature | None = None,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = CURVATURE.seconds,
     budget: Budget | None = None,
     params: BoundParams = DEFAULT,
 ) -> Guarantee:

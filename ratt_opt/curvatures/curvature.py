@@ -42,11 +42,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Curvature", "curvature", "curvature_over", "total_curvature"]
 
-GAP = 0.02
-"""Default gap: a guarantee that is linear in ``1 - curvature`` then loses at most 2 % to the bracket."""
-SECONDS = 30.0
-"""Default seconds: what 30 robots with 12 controls take at a gap of 0.15, up to one instance in twenty (measured)."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Curvature:
@@ -83,8 +78,8 @@ def total_curvature(
     owners: ArrayLike | None = None,
     *,
     plan: ArrayLike | None = None,
-    gap: float = GAP,
-    time_limit: float | None = SECONDS,
+    gap: float = DEFAULT.gap,
+    time_limit: float | None = DEFAULT.seconds,
     max_nodes: int | None = None,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
@@ -125,8 +120,8 @@ def curvature(
     owners: ArrayLike | None = None,
     *,
     plan: ArrayLike | None = None,
-    gap: float = GAP,
-    time_limit: float | None = SECONDS,
+    gap: float = DEFAULT.gap,
+    time_limit: float | None = DEFAULT.seconds,
     max_nodes: int | None = None,
     max_evaluations: int | None = None,
     budget: Budget | None = None,

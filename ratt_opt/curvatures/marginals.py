@@ -17,7 +17,8 @@ from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import TableFunction
 from ratt_opt.setfunctions.lattice import marginal_ends
-from ratt_opt.setfunctions.properties import TOLERANCE, mask_without
+from ratt_opt.setfunctions.properties import mask_without
+from ratt_opt.setfunctions.property_params import DEFAULT as PROPERTY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = [
+    "MARGIN",
     "Context",
     "MarginalBrackets",
     "Marginals",
@@ -39,8 +41,9 @@ __all__ = [
 ]
 
 Context = tuple[int, ...]
-TOUCHING = 1e-9
-"""Ratios that differ by less, relatively, meet: the safety margins for rounding keep them apart."""
+MARGIN = 1e-9
+"""Relative safety margin for rounding on every bound; it keeps ratios apart that meet. Inverses of matrices whose
+condition is 1e6 lose less."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,7 +101,7 @@ def check_monotone(domain: Domain, found: Marginals) -> None:
         return
     worst = int(found.smallest_lower.argmin())
     # The rule of find_monotonicity_violation: marginals are differences of values, and as exact as those.
-    if found.smallest_lower[worst] < -max(TOLERANCE * domain.largest, domain.noise):
+    if found.smallest_lower[worst] < -max(PROPERTY.tolerance * domain.largest, domain.noise):
         context = domain.named(found.smallest_context[worst])
         shown = f"adding {domain.element(worst)} to {list(context)} changes it by {found.smallest_lower[worst]:.6g}"
         raise InputError("f", "must be non-decreasing", shown)
@@ -221,9 +224,9 @@ class MarginalBrackets(ABC):
         target = float(shown.min(initial=np.inf)) / (1 + self._gap)
         open_ = np.flatnonzero((safe < target) & ~self._done)
         if not len(open_):
-            if (safe >= shown * (1 - TOUCHING)).all():
+            if (safe >= shown * (1 - MARGIN)).all():
                 return Stop.CLOSED
-            return Stop.GAP if safe.min() >= target * (1 - TOUCHING) else Stop.EXHAUSTED
+            return Stop.GAP if safe.min() >= target * (1 - MARGIN) else Stop.EXHAUSTED
         if stop := self._budget.stop():
             return stop
         self._refine(int(open_[safe[open_].argmin()]), target)

@@ -23,7 +23,7 @@ import numpy as np
 
 from ratt_opt._validation import check_integer
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
-from ratt_opt.curvatures.curvature import GAP, SECONDS, curvature_over
+from ratt_opt.curvatures.curvature import curvature_over
 from ratt_opt.curvatures.domains import Domain, domain_of, over_subsets, values_over
 from ratt_opt.curvatures.marginals import Context, each_marginal, elements_at, enumerate_marginals
 from ratt_opt.curvatures.params import DEFAULT, CurvatureParams
@@ -85,7 +85,7 @@ def submodularity_ratio(
     *,
     plan: ArrayLike | None = None,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     params: CurvatureParams = DEFAULT,
@@ -134,7 +134,7 @@ def generalised_curvature(
     *,
     plan: ArrayLike | None = None,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
     params: CurvatureParams = DEFAULT,
@@ -167,7 +167,7 @@ def generalised_curvature(
         how, stop = "every nested pair of sets", Stop.EXHAUSTED
     else:
         # Total curvature compares a marginal with any other of its element, not only with earlier ones.
-        found = curvature_over(domain, total=not f.is_submodular, gap=GAP, budget=inner, params=params)
+        found = curvature_over(domain, total=not f.is_submodular, gap=params.gap, budget=inner, params=params)
         kept, upper = _searched_kept(domain, found, seed, inner, params), found.upper
         how, stop = f"at most the curvature ({found.how}); a searched pair", found.stop
     small, large = map(domain.named, (kept.small, kept.large))
@@ -188,7 +188,7 @@ def _ratio_from_curvature(domain: Domain, seed: int, budget: Budget, params: Cur
     """``rho(w | S)`` is at least ``1 - c`` times the largest marginal of ``w``; those add up to ``rho(W | S)``."""
     if domain.is_submodular:
         return _ratio(1.0, _Pair(), domain, "submodular by theory", Stop.EXHAUSTED)
-    curved = curvature_over(domain, total=True, gap=GAP, budget=budget, params=params)
+    curved = curvature_over(domain, total=True, gap=params.gap, budget=budget, params=params)
     found = _sampled_ratio(domain, seed, budget, params)
     lower = complement_below(curved.upper)
     return _ratio(lower, found, domain, "1 - total curvature; a searched pair", curved.stop)

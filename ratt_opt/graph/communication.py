@@ -157,13 +157,9 @@ def _components(neighbours: Sequence[int], robots: int) -> tuple[frozenset[int],
     return tuple(groups)
 
 
-SPARSE = 6
-"""Positions for each bit that is set, from which bits are taken one by one: at 500 positions 20 bits take a seventh."""
-
-
 def _bits(mask: int) -> list[int]:
     """Positions of the bits that are set, ascending."""
-    if SPARSE * mask.bit_count() < mask.bit_length():
+    if 6 * mask.bit_count() < mask.bit_length():  # one by one: 20 bits of 500 then take a seventh of the time
         found = []
         while mask:
             lowest = mask & -mask

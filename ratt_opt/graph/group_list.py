@@ -21,15 +21,14 @@ if TYPE_CHECKING:
 
 __all__ = ["LARGEST_MASK", "MOST_CUT", "NARROW", "GroupList", "groups_of"]
 
-MOST_CUT = 255
+MOST_CUT = int(np.iinfo(np.uint8).max)
 """Links that leave a group, up to which their number is a byte."""
 LARGEST_MASK = 60
 """Most robots whose groups are listed as bit masks of 64."""
-NARROW = 32
-"""Robots up to which a group's bit mask has 32 bits."""
-
 STEPS = 20_000
 """Steps between two looks at the clock, each of which lists one group at most: some milliseconds."""
+NARROW = np.iinfo(np.uint32).bits
+"""Robots up to which a group's bit mask has 32 bits."""
 
 
 def groups_of(threat: Threat) -> GroupList:

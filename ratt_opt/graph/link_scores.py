@@ -43,18 +43,6 @@ __all__ = [
 SHARES = (1.0, 0.5, 0.0)
 """Shares ``w``: links inside, links cut, and one between, whose scores are multiples of a half too."""
 
-STEPS = 6
-"""Steps of the descent for each size, from the multipliers of the size before. Measured on twelve threats of 30 and 50
-robots (dense, disks of mean degree 12, hubs): with 3 the vectors of dense graphs are coarser, with 12 only those of
-disks and hubs are a little finer; 6 take a quarter of a second at 30 robots, one at 50."""
-
-NODES = 100
-"""Nodes for deciding whether a group that scores enough may hold a set of robots: about 0.1 s. Not measured."""
-
-MARGIN, ROUNDING = 1e-6, 1e-11
-"""Relative and absolute, and of the largest multiplier for each robot, added to bounds before they are rounded down:
-eigenvalues and sums are off by some 1e-14 of the numbers that go into them."""
-
 
 @dataclass(frozen=True, slots=True)
 class LinkScores:
@@ -137,12 +125,12 @@ class MostScores:
 
 
 def scoring_group(
-    graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget
+    graph: CommunicationGraph, members: BoolArray, joining: int, needed: FloatArray, budget: Budget, *, most: int = 100
 ) -> BoolArray | None:
     """Find these robots (N,) and ``joining`` others that score enough (K,); ``None`` if it is proved that none do.
 
-    Others are taken or left one by one, a node each in ``budget``; after ``NODES`` of them ``members`` are returned,
-    and nothing is known.
+    Others are taken or left one by one, a node each in ``budget``; after ``most`` of them (100 take about 0.1 s)
+    ``members`` are returned, and nothing is known.
 
     Raises
     ------
@@ -150,7 +138,7 @@ def scoring_group(
     """
     known, size = most_scores(graph), int(members.sum()) + joining
     nodes = [(members, ~members)]
-    for _ in range(NODES):
+    for _ in range(most):
         if not nodes:
             return None
         budget.spend()
@@ -170,7 +158,8 @@ def scoring_group(
 
 def _rounded(bound: float) -> float:
     """Scores are multiples of a half."""
-    return float(np.floor(2.0 * (bound + MARGIN * (1.0 + abs(bound)))) / 2.0)
+    margin = 1e-6  # eigenvalues and sums are off by some 1e-14 of the numbers that go into them
+    return float(np.floor(2.0 * (bound + margin * (1.0 + abs(bound)))) / 2.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,11 +200,16 @@ class RelaxedScores:
 
     @staticmethod
     def rounding(multipliers: FloatArray) -> float:
-        """More than what a bound by these is off by, if it is not much larger than 1."""
-        return ROUNDING * len(multipliers) * float(np.abs(multipliers).max(initial=0.0))
+        """More than what a bound by these is off by, if it is not much larger than 1: some 1e-14 of the largest."""
+        return 1e-11 * len(multipliers) * float(np.abs(multipliers).max(initial=0.0))
 
-    def descend(self, size: float, start: FloatArray, steps: int = STEPS) -> tuple[float, FloatArray]:
-        """A better bound for groups of ``size`` and its multipliers (N,), by quasi-Newton steps."""
+    def descend(self, size: float, start: FloatArray, steps: int = 6) -> tuple[float, FloatArray]:
+        """A better bound for groups of ``size`` and its multipliers (N,), by quasi-Newton steps.
+
+        ``steps`` : from the multipliers of the size before. On twelve threats of 30 and 50 robots (dense, disks of mean
+            degree 12, hubs), with 3 the vectors of dense graphs are coarser, with 12 only those of disks and hubs are a
+            little finer; 6 take a quarter of a second at 30 robots, one at 50
+        """
         from scipy.optimize import minimize  # a third of a second
 
         found = minimize(self.bound, start, args=(size,), jac=True, method="L-BFGS-B", options={"maxiter": steps})

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["BestElements", "Coverage", "FacilityLocation"]
 
-MOST_WHOLE = 2**40
-"""Whole numbers up to this are divided and multiplied without rounding to another one."""
-
 
 class BestElements(SumFunction):
     """A weighted sum over parts of the best utility that any element of the set has for the part (0 without one).
@@ -69,7 +66,8 @@ class BestElements(SumFunction):
     def spacing(self) -> float:
         """The greatest common divisor of all summands, if they are whole."""
         summands = np.unique(self.utility * self.weights)
-        if not self.has_exact_values or summands.max(initial=0.0) >= MOST_WHOLE:
+        whole = 2**40  # numbers below are divided and multiplied without rounding to another whole number
+        if not self.has_exact_values or summands.max(initial=0.0) >= whole:
             return 0.0
         return float(np.gcd.reduce(summands.astype(np.int64), initial=0))
 

@@ -25,8 +25,6 @@ __all__ = ["CriterionParts", "OtherElements", "SeparableMinorant", "Tangent", "T
 
 ROUNDING = 1e-12
 """Error of a marginal, relative to the criteria it is a difference of: thousands of units in the last place."""
-INVERSE_ROUNDING = 1e-15
-"""Error of an inverse relative to its size, and to the condition: four units in the last place."""
 VALUE_ROUNDING = 1e-14
 """Error of a value in the same sense: some dozens of units in the last place cover sums over a few hundred targets."""
 
@@ -254,8 +252,11 @@ class CriterionParts(SetFunction):
         return None
 
     def inverse_rounding(self, scale: FloatArray) -> float:
-        """Error of the sum of targets' criteria of these sizes (M,), by the condition of their matrices."""
-        return INVERSE_ROUNDING * float(scale @ self.condition)
+        """Error of the sum of targets' criteria of these sizes (M,), by the condition of their matrices.
+
+        Relative to its size and to the condition, an inverse is off by four units in the last place.
+        """
+        return 1e-15 * float(scale @ self.condition)
 
     def marginal_ends(self, owners: IntArray, budget: Budget) -> tuple[FloatArray, FloatArray]:  # noqa: ARG002
         """(n,) proved lower bounds on the smallest and upper bounds on the largest marginals of the elements.

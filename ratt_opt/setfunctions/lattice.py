@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._blocks import blocks
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import loops
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.budget import Budget
 
@@ -29,17 +28,6 @@ __all__ = [
     "smallest_gain_ratio",
 ]
 
-SETS = 1 << 15
-"""Sets of one element that are compared at once: what fits a processor's cache."""
-PAIRS = 1 << 22
-"""Pairs of sets that a call takes: some milliseconds."""
-
-
-def _parts(count: int, size: int) -> Iterator[tuple[int, int]]:
-    """The first set of each part of ``count`` sets, and the first one after it."""
-    for first in range(0, count, size):
-        yield first, min(first + size, count)
-
 
 def marginal_ends(values: FloatArray, n: int) -> FloatArray:
     """(2, n) smallest and largest ``f(S + i) - f(S)`` over all ``S`` without ``i``.
@@ -51,9 +39,9 @@ def marginal_ends(values: FloatArray, n: int) -> FloatArray:
 
 
 def _ends_by(values: FloatArray, i: int) -> tuple[float, float]:
-    """Smallest and largest ``f(S + i) - f(S)``."""
+    """Smallest and largest ``f(S + i) - f(S)``, by parts that fit a processor's cache: 2^15 sets."""
     by_i, ends = values.reshape(-1, 2, 1 << i), []
-    for first, last in _parts(len(by_i), max(SETS >> i, 1)):
+    for first, last in blocks(len(by_i), 128 << i):
         rises = by_i[first:last, 1] - by_i[first:last, 0]
         ends += [rises.min(), rises.max()]
     return float(min(ends)), float(max(ends))
@@ -81,7 +69,7 @@ def disjoint_slack(values: FloatArray, budget: Budget) -> tuple[float, int, int]
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of floats.
     """
     table, (slack, sets) = address(checked("values", values, np.float64, (len(values),))), _nothing()
-    for first, last in _parts(len(values), max(PAIRS // len(values), 1)):
+    for first, last in blocks(len(values), len(values)):
         budget.check()
         loops.disjoint_slack(table, first, last, address(slack), address(sets))
     return float(slack[0]), int(sets[0]), int(sets[1])
@@ -93,7 +81,7 @@ def overlapping_slack(values: FloatArray, budget: Budget) -> tuple[float, int, i
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of floats.
     """
     table, (slack, sets) = address(checked("values", values, np.float64, (len(values),))), _nothing()
-    for first, last in _parts(len(values), max(PAIRS // len(values), 1)):
+    for first, last in blocks(len(values), len(values)):
         budget.check()
         loops.overlapping_slack(table, len(values), first, last, address(slack), address(sets))
     return float(slack[0]), int(sets[0]), int(sets[1])
@@ -130,7 +118,7 @@ def smallest_gain_ratio(values: FloatArray, sizes: IntArray, budget: Budget, noi
     ratios, sets = np.full(2, np.inf), np.zeros(2, dtype=np.int64)
     positions = np.empty(1 << len(sizes), dtype=np.int64)
     found = address(positions), address(ratios), address(sets)
-    for first, last in _parts(len(values), max(PAIRS >> len(sizes), 1)):
+    for first, last in blocks(len(values), 1 << len(sizes)):
         if budget.is_over:
             break
         loops.gain_ratio(table, len(sizes), address(options), first, last, noise, *found)

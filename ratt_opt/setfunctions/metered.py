@@ -22,8 +22,6 @@ __all__ = ["Metered", "metered", "table_within", "unmetered"]
 
 VALUES = PaceParams(first=1, most=2**14)
 """Sets that are valued at once: however fast they are, their memberships stay in cache."""
-MOST_KEPT_AT_ONCE, MOST_KEPT = 2**12, 2**17
-"""Sets whose values are stored: larger batches enumerate, so none comes twice; all stay within some megabytes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,6 +42,21 @@ class EstimateParams:
 
 
 ESTIMATE = EstimateParams()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MemoryParams:
+    """Parameters of what is stored of a function.
+
+    ``at_once`` : sets of a batch whose values are stored, at most [1]: larger ones enumerate, so none comes twice
+    ``values`` : stored in all, at most [1]: they stay within some megabytes; beyond, values are computed again
+    """
+
+    at_once: int = 2**12
+    values: int = 2**17
+
+
+MEMORY = MemoryParams()
 
 
 class Metered(SetFunction):
@@ -83,7 +96,7 @@ class Metered(SetFunction):
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
-        if len(membership) > MOST_KEPT_AT_ONCE or len(self._known) > MOST_KEPT:
+        if len(membership) > MEMORY.at_once or len(self._known) > MEMORY.values:
             return self._asked(membership)
         keys = [row.tobytes() for row in np.packbits(membership, axis=1)]
         new = {key: k for k, key in enumerate(keys) if key not in self._known}

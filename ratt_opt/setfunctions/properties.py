@@ -8,7 +8,7 @@ more. An interrupt propagates.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,7 +20,8 @@ from ratt_opt.setfunctions.evaluation_error import value_error
 from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.setfunctions.lattice import disjoint_slack, marginal_ends, overlapping_slack, second_differences
 from ratt_opt.setfunctions.metered import table_within
-from ratt_opt.setfunctions.sampling import INEQUALITIES, TRIALS, NotFound, Violation, sample, slack_of
+from ratt_opt.setfunctions.property_params import DEFAULT, PropertyParams
+from ratt_opt.setfunctions.sampling import INEQUALITIES, NotFound, Violation, sample, slack_of
 
 if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
@@ -38,20 +39,6 @@ __all__ = [
     "mask_without",
 ]
 
-LARGEST_EXACT = 24
-"""Largest ground set whose table is checked exhaustively (128 MiB of float64)."""
-LARGEST_DISJOINT = 18
-"""Largest ground set whose 3**n disjoint pairs are looked at (under a second)."""
-LARGEST_OVERLAPPING = 12
-"""Largest ground set whose 4**n pairs are looked at."""
-TOLERANCE = 1e-9
-"""Default tolerance: a violation must exceed it times the largest absolute value of the function."""
-TABLE_SHARE = 0.5
-"""Share of the seconds in which a table has to be complete; of a slower function random sets are tried in the rest."""
-
-SECONDS = 60.0
-"""A table of 2**24 values of a function in plain Python takes ten minutes."""
-
 
 @dataclass(frozen=True, slots=True)
 class _Question:
@@ -63,18 +50,18 @@ class _Question:
     trials: int
     seed: int
     budget: Budget
+    params: PropertyParams
 
-    @classmethod
-    def of(cls, f: SetFunction, rule: str, tolerance: float, *, trials: int, seed: int, budget: Budget) -> Self:
+    def __post_init__(self) -> None:
         """InputError : the tolerance is not a number >= 0."""
-        return cls(f, rule, check_number("tolerance", tolerance, low=0), trials, seed, budget)
+        check_number("tolerance", self.tolerance, low=0)
 
     def table(self) -> FloatArray | None:
         """The table of ``f``; ``None`` if it is too large, or not complete in its share of the time."""
-        if self.f.n > LARGEST_EXACT:
+        if self.f.n > self.params.tabulated:
             return None
         try:
-            return finite_values(table_within(self.f, self.budget.part(TABLE_SHARE)))
+            return finite_values(table_within(self.f, self.budget.part(self.params.table_share)))
         except OutOfBudget as out:
             if out.stop is Stop.INTERRUPTED:
                 raise
@@ -90,6 +77,7 @@ class _Question:
             trials=self.trials,
             seed=self.seed,
             budget=self.budget,
+            params=self.params,
         )
 
     @property
@@ -130,16 +118,17 @@ def find_normalisation_violation(f: SetFunction, *, tolerance: float = 0.0) -> V
 def find_negativity(
     f: SetFunction,
     *,
-    tolerance: float = TOLERANCE,
-    trials: int = TRIALS,
+    tolerance: float = DEFAULT.tolerance,
+    trials: int = DEFAULT.trials,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: PropertyParams = DEFAULT,
 ) -> Violation | NotFound | None:
     """Return the set with the most negative value, if any; parameters as in :func:`find_monotonicity_violation`."""
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
-    asked = _Question.of(f, "non-negative", tolerance, trials=trials, seed=seed, budget=own)
+    asked = _Question(f, "non-negative", tolerance, trials=trials, seed=seed, budget=own, params=params)
     values = asked.table()
     return asked.sampled() if values is None else asked.witness((int(values.argmin()), 0), values)
 
@@ -148,12 +137,13 @@ def find_negativity(
 def find_monotonicity_violation(
     f: SetFunction,
     *,
-    tolerance: float = TOLERANCE,
-    trials: int = TRIALS,
+    tolerance: float = DEFAULT.tolerance,
+    trials: int = DEFAULT.trials,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: PropertyParams = DEFAULT,
 ) -> Violation | NotFound | None:
     """Find the set ``a`` and element ``b`` with the most negative marginal ``f(a | b) - f(a)``.
 
@@ -162,6 +152,7 @@ def find_monotonicity_violation(
     ``trials``, ``seed`` : of the sampled search, if the ground set has more than 24 elements or time is short
     ``time_limit``, ``max_evaluations`` : seconds, a minute by default, and values of ``f``, unlimited by default
     ``budget`` : an outer search's budget: its seconds and interrupts count too
+    ``params`` : which sets are looked at
 
     Returns the witness; ``None`` if there is none, by a look at every set (up to 24 elements) or by theory
     (information criteria: added information is positive semidefinite, up to the rounding their input rule admits);
@@ -170,8 +161,8 @@ def find_monotonicity_violation(
     Source: ratt.tex, Section III.
     """
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
-    asked = _Question.of(f, "non-decreasing", tolerance, trials=trials, seed=seed, budget=own)
-    if f.is_non_decreasing and (f.n > LARGEST_EXACT or is_proved(f)):
+    asked = _Question(f, "non-decreasing", tolerance, trials=trials, seed=seed, budget=own, params=params)
+    if f.is_non_decreasing and (f.n > params.tabulated or is_proved(f)):
         return None
     values = asked.table()
     if values is None:
@@ -188,12 +179,13 @@ def find_monotonicity_violation(
 def find_submodularity_violation(
     f: SetFunction,
     *,
-    tolerance: float = TOLERANCE,
-    trials: int = TRIALS,
+    tolerance: float = DEFAULT.tolerance,
+    trials: int = DEFAULT.trials,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: PropertyParams = DEFAULT,
 ) -> Violation | NotFound | None:
     """Find sets ``a = S + x`` and ``b = S + y`` that break ``f(a) + f(b) >= f(a | b) + f(a & b)`` most.
 
@@ -202,8 +194,8 @@ def find_submodularity_violation(
     Source: the definition by second differences, equivalent to all pairs of sets.
     """
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
-    asked = _Question.of(f, "submodular", tolerance, trials=trials, seed=seed, budget=own)
-    return None if f.is_submodular and (f.n > LARGEST_EXACT or is_proved(f)) else _second_order(asked)
+    asked = _Question(f, "submodular", tolerance, trials=trials, seed=seed, budget=own, params=params)
+    return None if f.is_submodular and (f.n > params.tabulated or is_proved(f)) else _second_order(asked)
 
 
 def is_proved(f: SetFunction) -> bool:
@@ -215,31 +207,33 @@ def is_proved(f: SetFunction) -> bool:
 def find_modularity_violation(
     f: SetFunction,
     *,
-    tolerance: float = TOLERANCE,
-    trials: int = TRIALS,
+    tolerance: float = DEFAULT.tolerance,
+    trials: int = DEFAULT.trials,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: PropertyParams = DEFAULT,
 ) -> Violation | NotFound | None:
     """Find sets ``a = S + x`` and ``b = S + y`` with the largest ``|f(a) + f(b) - f(a | b) - f(a & b)|``.
 
     Parameters and result are those of :func:`find_monotonicity_violation`.
     """
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
-    return _second_order(_Question.of(f, "modular", tolerance, trials=trials, seed=seed, budget=own))
+    return _second_order(_Question(f, "modular", tolerance, trials=trials, seed=seed, budget=own, params=params))
 
 
 @Step("looking for a violation of subadditivity")
 def find_subadditivity_violation(
     f: SetFunction,
     *,
-    tolerance: float = TOLERANCE,
-    trials: int = TRIALS,
+    tolerance: float = DEFAULT.tolerance,
+    trials: int = DEFAULT.trials,
     seed: int = 0,
-    time_limit: float | None = SECONDS,
+    time_limit: float | None = DEFAULT.seconds,
     max_evaluations: int | None = None,
     budget: Budget | None = None,
+    params: PropertyParams = DEFAULT,
 ) -> Violation | NotFound | None:
     """Find sets that break ``f(a) + f(b) >= f(a | b)`` most.
 
@@ -249,7 +243,7 @@ def find_subadditivity_violation(
     :func:`find_monotonicity_violation`.
     """
     own = Budget.inside(budget, time_limit, max_evaluations=max_evaluations)
-    asked = _Question.of(f, "subadditive", tolerance, trials=trials, seed=seed, budget=own)
+    asked = _Question(f, "subadditive", tolerance, trials=trials, seed=seed, budget=own, params=params)
     values = asked.table()
     if values is None:
         return asked.sampled()
@@ -264,8 +258,8 @@ def _subadditive(asked: _Question, values: FloatArray) -> Violation | NotFound |
     # Theory needs the premises exactly.
     if values.min() >= 0 and (n < 2 or second_differences(values, n, asked.budget).min() >= 0):
         return None
-    monotone = n <= LARGEST_DISJOINT and (n == 0 or marginal_ends(values, n)[0].min() >= 0)
-    if not monotone and n > LARGEST_OVERLAPPING:
+    monotone = n <= asked.params.disjoint and (n == 0 or marginal_ends(values, n)[0].min() >= 0)
+    if not monotone and n > asked.params.overlapping:
         return asked.sampled()
     _, a, b = (disjoint_slack if monotone else overlapping_slack)(values, asked.budget)
     return asked.witness((a, b), values)

@@ -28,11 +28,6 @@ UNIT = float(np.finfo(np.float64).eps) / 2
 """Unit roundoff of float64."""
 MORE = 1 + 1e-12
 """Factor on bounds for their own rounding."""
-SPLIT = 2.0**27 + 1
-"""Factor that splits a float64 into halves whose products are exact (Dekker 1971)."""
-SMALL = 2.0**-480
-"""Size of a number, beside 1, below which its square may lose digits to underflow: its last digit of 106 bits is at
-least ``2^(2 * -480 - 106) = 2^-1066``, and float64 goes down to ``2^-1074``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -157,7 +152,9 @@ def _blocks(linked: Any) -> list[IntArray]:
 def _planar_negative_part(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
     """Bound the negative part of ``[[a, b], [b, c]]``.
 
-    It is ``(b^2 - ac) / lambda_max``, with exact products, or the bound of Gershgorin's discs.
+    It is ``(b^2 - ac) / lambda_max``, with exact products, or the bound of Gershgorin's discs. Beside 1, the square of
+    a number below ``2^-480`` may lose digits to underflow: above, its last digit of 106 bits is at least
+    ``2^(2 * -480 - 106) = 2^-1066``, and float64 goes down to ``2^-1074``.
     """
     largest = np.maximum(np.maximum(np.abs(a), np.abs(c)), np.abs(b))
     exponent = np.frexp(largest)[1]
@@ -168,7 +165,7 @@ def _planar_negative_part(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatA
     high, low = _exact_difference(first - second, -rest)  # the first difference is exact where it matters (Sterbenz)
     missing = high + (low + rest_of_rest)  # of the right sign: what is added is less than ``high``, if that is not 0
     by_determinant = missing / np.maximum(np.maximum(a, c), 0.25) * MORE  # if a, c >= 0, one is at least |b|
-    is_exact = (a >= 0) & (c >= 0) & (np.maximum(a, c) >= 0.25) & ((b == 0) | (np.abs(b) >= SMALL))
+    is_exact = (a >= 0) & (c >= 0) & (np.maximum(a, c) >= 0.25) & ((b == 0) | (np.abs(b) >= 2.0**-480))
     return np.asarray(np.ldexp(np.where(is_exact, np.minimum(by_determinant, discs), discs), exponent))
 
 
@@ -188,6 +185,7 @@ def _exact_difference(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def _halves(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    big = SPLIT * x
+    """Split numbers into halves whose products are exact (Dekker 1971)."""
+    big = (2.0**27 + 1) * x
     high = big - (big - x)
     return high, x - high

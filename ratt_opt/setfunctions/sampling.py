@@ -11,14 +11,16 @@ from ratt_opt._validation import check_integer
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.setfunctions.base import finite_values
 from ratt_opt.setfunctions.metered import Metered
+from ratt_opt.setfunctions.property_params import DEFAULT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
+    from ratt_opt.setfunctions.property_params import PropertyParams
 
-__all__ = ["INEQUALITIES", "TRIALS", "NotFound", "Violation", "sample", "slack_of"]
+__all__ = ["INEQUALITIES", "NotFound", "Violation", "sample", "slack_of"]
 
 Sets = TypeVar("Sets", "BoolArray", "IntArray")
 
@@ -30,12 +32,6 @@ INEQUALITIES = {
     "modular": "f(A) + f(B) = f(A | B) + f(A & B)",
     "subadditive": "f(A) + f(B) >= f(A | B)",
 }
-TRIALS = 20_000
-"""Default pairs of sets tried: half a second for a criterion of 120 elements and 15 targets."""
-BATCH = 2_000
-"""Pairs evaluated at once: bounds the memory, a membership row a pair."""
-CLIMBS = 50
-"""Most steps from the worst pair found, each to its best neighbour; it ends earlier if no neighbour is worse."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +124,7 @@ def sample(
     trials: int,
     seed: int,
     budget: Budget | None = None,
+    params: PropertyParams = DEFAULT,
 ) -> Violation | NotFound:
     """Try random pairs of sets of every size, then climb from the worst one by adding or removing elements.
 
@@ -138,13 +135,13 @@ def sample(
     own, worst, stop = budget or Budget(), _Worst(np.zeros((2, f.n), dtype=np.bool_)), Stop.HEURISTIC
     metered, rng = Metered(f, own), np.random.default_rng(seed)
     try:
-        batch = 1 if own.seconds_left < np.inf else BATCH  # a first few pairs before time is up
+        batch = 1 if own.seconds_left < np.inf else params.batch  # a first few pairs before time is up
         while worst.tried < trials:
             a, b = _random_pairs(rng, rule, f.n, min(batch, trials - worst.tried))
             worst.offer(a, b, slack_of(metered.evaluate, rule, a, b))
             worst.scale = max(worst.scale, float(np.abs(metered.evaluate(a | b)).max()))
-            batch = min(2 * batch, BATCH)
-        _climb(metered, rule, worst)
+            batch = min(2 * batch, params.batch)
+        _climb(metered, rule, worst, params)
     except OutOfBudget as out:
         stop = out.stop
     if not worst.tried:
@@ -173,14 +170,14 @@ def _random_pairs(rng: np.random.Generator, rule: str, n: int, count: int) -> tu
     return a, b
 
 
-def _climb(f: SetFunction, rule: str, worst: _Worst) -> None:
+def _climb(f: SetFunction, rule: str, worst: _Worst, params: PropertyParams) -> None:
     """Flip one element in both sets at a time while that lowers the slack."""
     same = np.flatnonzero(worst.pair[0] == worst.pair[1])
-    better, left = bool(len(same)), CLIMBS
+    better, left = bool(len(same)), params.climbs
     while better and left:
         better, left, pair = False, left - 1, worst.pair
-        for start in range(0, len(same), BATCH):
-            some = same[start : start + BATCH]
+        for start in range(0, len(same), params.batch):
+            some = same[start : start + params.batch]
             flips = np.zeros((len(some), f.n), dtype=np.bool_)
             flips[np.arange(len(some)), some] = True
             a, b = pair[0] ^ flips, pair[1] ^ flips

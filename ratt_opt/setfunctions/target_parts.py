@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._blocks import blocks
 from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
 
 if TYPE_CHECKING:
@@ -13,9 +14,6 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.criterion_parts import CriterionParts
 
 __all__ = ["TargetParts"]
-
-SETS_AT_ONCE = 2**14
-"""Sets whose matrices are held at once: some megabytes."""
 
 
 class TargetParts(Decomposition):
@@ -57,11 +55,11 @@ class TargetParts(Decomposition):
         objective = self._objective
         information = objective.information[self._touching[part], part]
         values = np.empty(len(membership))
-        for start in range(0, len(membership), SETS_AT_ONCE):
-            rows = membership[start : start + SETS_AT_ONCE].astype(np.float64)
+        for first, last in blocks(len(membership), 64 * information[0].size):  # matrices stay in some megabytes
+            rows = membership[first:last].astype(np.float64)
             added = np.tensordot(rows, information, axes=1)
             criterion = objective.target_criterion(objective.prior_information[part] + added, part)
-            values[start : start + len(rows)] = self._top[part] - criterion
+            values[first:last] = self._top[part] - criterion
         return values
 
     def marginal_bounds(self, part: int) -> FloatArray:

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from ratt_opt import InputError
+from ratt_opt import InputError, _blocks
 from ratt_opt.budget import Budget
 from ratt_opt.setfunctions import lattice
 
@@ -96,10 +96,9 @@ def test_parts_of_a_pass_are_the_whole(monkeypatch):
 
     whole, looks = found(Budget()), []
     monkeypatch.setattr(Budget, "check", lambda _: looks.append(None))
-    for name, size in (("SETS", 1 << 13), ("PAIRS", 1 << 9)):
-        monkeypatch.setattr(lattice, name, size)
+    monkeypatch.setattr(_blocks, "STEPS", 1 << 12)
     assert found(Budget()) == whole
-    assert len(looks) == 16 * 15 // 2 + 256 // 2 * 2
+    assert len(looks) == 16 * 15 // 2 + 256 // 16 * 2
 
 
 def test_what_c_may_not_read_is_refused():

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._blocks import blocks
 from ratt_opt.curvatures.planar.level_program import MARGIN
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import loops
@@ -18,9 +19,6 @@ if TYPE_CHECKING:
     from ratt_opt.curvatures.planar.level_program import RelaxedContext
 
 __all__ = ["ceilings"]
-
-TERMS = 4_000_000
-"""Options times places that a call goes through: some milliseconds."""
 
 
 def ceilings(  # noqa: PLR0917
@@ -62,9 +60,8 @@ def _sums_of_largest(
     checked("slopes", slopes, np.float64, (rows,))
     owned = address(checked("owners", owners, np.int64, (count,)))
     place, spare = address(checked("own", own, np.float64, (count, width))), address(best)
-    step = max(TERMS // max(own.size, 1), 1)
-    for first in range(0, rows, step):
+    for first, last in blocks(rows, own.size):
         given = owned, address(levels[first:]), address(slopes[first:]), place
         sums = address(found[0, first:]), address(found[1, first:])
-        loops.sum_ceilings(min(step, rows - first), count, width, *given, spare, *sums)
+        loops.sum_ceilings(last - first, count, width, *given, spare, *sums)
     return found[0], found[1]

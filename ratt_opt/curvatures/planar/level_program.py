@@ -38,8 +38,6 @@ MARGIN = 1e-12
 """Safety margin for rounding of a ceiling, relative to the sum of the absolute terms."""
 EDGES = 2
 """Edges of a sector."""
-DUAL, PRIMAL = 1, 4
-"""Simplex strategies of HiGHS: after new rows, and after a new objective."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,13 +111,13 @@ class MixtureProgram:
         starts = np.arange(count + 1) * width
         self._program.add_rows(Rows(np.full(count, -inf), constants, starts, columns, values.ravel()))
         self._cuts += count
-        self._program.option("simplex_strategy", DUAL)
+        self._program.option("simplex_strategy", 1)  # dual simplex: only rows are new
 
     def change_slope(self, slope: float) -> None:
         """Change the slope in the objective; the old solution stays feasible."""
         self._program.change_cost(slope * self._own)
         if self._solved:
-            self._program.option("simplex_strategy", PRIMAL)
+            self._program.option("simplex_strategy", 4)  # primal simplex: only the objective is new
 
     def solve(self) -> tuple[FloatArray, float, FloatArray]:
         """(n,) mixture, ``t`` and (2 + C,) multipliers: of the edges, capped, and of the cuts, with sum 1."""
@@ -218,8 +216,8 @@ def _sector_forms(parts: FloatArray, own_base: FloatArray, sector: Sector | None
     """(3, n) scores and (3,) constants: the level of the sector's target, from below, and the sector's two edges."""
     if sector is None:
         return np.zeros((3, len(parts))), np.zeros(3)
-    sides = sector.middle + np.array([1.0, -1.0]) * (np.pi / 2 - sector.half)
-    directions = np.concatenate([own_direction(sector.middle, sector.half)[None], -along(sides)])
+    EDGES = sector.middle + np.array([1.0, -1.0]) * (np.pi / 2 - sector.half)
+    directions = np.concatenate([own_direction(sector.middle, sector.half)[None], -along(EDGES)])
     directions[1:, 0] = 0.0
     return directions @ parts[:, :, sector.target].T, directions @ own_base[:, sector.target]
 

@@ -12,20 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.curvatures.marginals import MarginalBrackets
+from ratt_opt.curvatures.marginals import MARGIN, MarginalBrackets
 from ratt_opt.curvatures.planar.context_search import PlanarSearch
 from ratt_opt.curvatures.planar.contexts import Options, levels
 from ratt_opt.curvatures.planar.level_program import LevelProgram
-from ratt_opt.curvatures.planar.regions import MARGIN, MarginalSide
+from ratt_opt.curvatures.planar.regions import MarginalSide
 
 if TYPE_CHECKING:
     from ratt_opt.budget import Stop
     from ratt_opt.curvatures.planar.level_program import RelaxedContext
 
 __all__ = ["PlanarBrackets"]
-
-MOST_SPARE = 1e100
-"""Finite, so that no product with an end that is 0 or infinite is undefined."""
 
 
 class PlanarBrackets(MarginalBrackets):
@@ -117,7 +114,8 @@ class PlanarBrackets(MarginalBrackets):
         """Return the factor (at least 1) by which an element's proved ratio may fall short of the one seen."""
         if not (self.seen_most[x] > 0 and 0 < target < np.inf):
             return 1.0
-        return min(max(float(self.seen_least[x] / self.seen_most[x]) / target, 1.0), MOST_SPARE)
+        finite = 1e100  # so that no product with an end that is 0 or infinite is undefined
+        return min(max(float(self.seen_least[x] / self.seen_most[x]) / target, 1.0), finite)
 
     def _record(self, x: int) -> None:
         low, high = self._searches[x]

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.curvatures.marginals import MARGIN
 from ratt_opt.curvatures.planar.ceilings import ceilings
 from ratt_opt.curvatures.planar.contexts import levels
 from ratt_opt.curvatures.planar.inequalities import least_enough, least_marginal, most_enough, most_marginal
@@ -33,9 +34,6 @@ if TYPE_CHECKING:
     from ratt_opt.curvatures.planar.level_program import RelaxedContext
 
 __all__ = ["MarginalSide", "Region"]
-
-MARGIN = 1e-9
-"""Relative safety margin for rounding on every bound."""
 
 
 @dataclass(slots=True, eq=False)

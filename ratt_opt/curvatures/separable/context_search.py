@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.curvatures.marginals import MARGIN
 from ratt_opt.search.branch_and_bound import divide_next
 from ratt_opt.search.open_nodes import OpenNodes
 
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
     from ratt_opt.setfunctions.information import InformationObjective
 
 __all__ = ["BestContext", "ContextSearch", "FloorSearch"]
-
-MARGIN = 1e-9
-"""Relative safety margin for rounding on every bound: inverses of condition 1e6 lose less."""
 
 
 class BestContext:

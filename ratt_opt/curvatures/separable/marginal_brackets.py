@@ -23,11 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SeparableBrackets", "other_elements"]
 
-WORST_CONDITION = 1e6
-"""Information matrices beyond this condition count as singular: their inverse is not trusted to nine digits."""
-LARGER = 1e-6
-"""A bound on a largest marginal that exceeds the value alone by less, relatively, is that value and its margin."""
-
 
 class SeparableBrackets(MarginalBrackets):
     """One search an element, over contexts of at most one element of each other owner."""
@@ -47,7 +42,8 @@ class SeparableBrackets(MarginalBrackets):
         if not self._against_own:
             self.most = np.maximum(ceiling, self._single)
             # Attained ends of the largest marginals, where the value alone is not known to be it.
-            for x in np.flatnonzero(self.most > self.seen_most * (1 + LARGER)).tolist():
+            slightly = 1 + 1e-6  # a bound that exceeds the value alone by no more is that value and its margin
+            for x in np.flatnonzero(self.most > self.seen_most * slightly).tolist():
                 if self._is_over(self._largest):
                     break
                 self._largest[x] = BestContext(self._f, x, self._beside(x), largest=True)
@@ -124,18 +120,22 @@ class SeparableBrackets(MarginalBrackets):
 
 
 def _inverses(information: FloatArray) -> tuple[BoolArray, FloatArray]:
-    """Find the regular matrices (..., d, d) and their inverses; the others get zero."""
+    """Find the regular matrices (..., d, d) and their inverses; the others get zero.
+
+    Those of a condition beyond 1e6 count as singular: their inverse is not trusted to the nine digits of ``MARGIN``.
+    """
+    worst = 1e6
     inverse = np.zeros_like(information)
     if information.shape[-1] == 2:
         a, b, c = information[..., 0, 0], information[..., 0, 1], information[..., 1, 1]
         low, high = eigenvalues(a, b, c)
-        regular = low * WORST_CONDITION > high
+        regular = low * worst > high
         scale = np.divide(1.0, determinant(a, b, c), out=np.zeros_like(a), where=regular)
         inverse[..., 0, 0], inverse[..., 1, 1] = c * scale, a * scale
         inverse[..., 0, 1] = inverse[..., 1, 0] = -b * scale
         return regular, inverse
     values = np.linalg.eigvalsh(information)
-    regular = values[..., 0] * WORST_CONDITION > values[..., -1]
+    regular = values[..., 0] * worst > values[..., -1]
     inverse[regular] = np.linalg.inv(information[regular])
     return regular, inverse
 

@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 
 __all__ = ["cheapest_cut", "heuristic_cut"]
 
-LARGEST_CUT = 200
-"""Larger groups lose the robot with the fewest links: a cheapest cut of 200 robots takes a tenth of a second, a hundred
-of them may be asked for, and if links are many the cheapest cut is a robot's anyway."""
 
-
-def heuristic_cut(threat: Threat, budget: Budget | None = None, *, ignoring: Collection[int] = ()) -> frozenset[Link]:
+def heuristic_cut(
+    threat: Threat, budget: Budget | None = None, *, ignoring: Collection[int] = (), most: int = 200
+) -> frozenset[Link]:
     """Split the largest group by its cheapest cut while the links, and the seconds, last.
 
-    Once the time is up groups of up to ``LARGEST_CUT`` still lose robots. Of cuts that cost the same the robot with
+    Once the time is up groups of up to ``most`` still lose robots. Of cuts that cost the same the robot with
     the fewest links is cut off, the lowest among equals.
 
     ``ignoring`` : robots that do not count for a group's size; a group with one that counts is not split
+    ``most`` : larger groups lose the robot with the fewest links [robots]: a cheapest cut of 200 takes a tenth of a
+        second, a hundred of them may be asked for, and if links are many the cheapest cut is a robot's anyway
     """
     own, locked = budget or Budget(), float(len(threat.graph.links) + 1)
     weights = np.zeros((threat.graph.n_robots, threat.graph.n_robots))
@@ -38,12 +38,12 @@ def heuristic_cut(threat: Threat, budget: Budget | None = None, *, ignoring: Col
     while True:
         largest = min(groups, key=lambda group: (-len(group.difference(ignoring)), min(group)))
         part = np.array(sorted(largest))
-        if len(part) == 1 or len(largest.difference(ignoring)) <= 1 or (len(part) > LARGEST_CUT and own.is_over):
+        if len(part) == 1 or len(largest.difference(ignoring)) <= 1 or (len(part) > most and own.is_over):
             return frozenset(cut)
         inside = weights[np.ix_(part, part)]
         side = np.zeros(len(part), dtype=np.bool_)
         side[inside.sum(axis=1).argmin()] = True
-        if len(part) <= LARGEST_CUT and not own.is_over and not _is_dense(inside):
+        if len(part) <= most and not own.is_over and not _is_dense(inside):
             found = cheapest_cut(inside)
             side = found if inside[np.ix_(found, ~found)].sum() < inside[np.ix_(side, ~side)].sum() else side
         cost = float(inside[np.ix_(side, ~side)].sum())

@@ -30,11 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["by_integer_program"]
 
-VIOLATION = 1e-4
-"""Inequalities violated by less are not added: far above HiGHS's feasibility tolerance, so that rounds end."""
-LARGEST_ROUND = 400
-"""Inequalities added per round, the most violated first: fewer make more rounds, more make larger programs."""
-
 
 def by_integer_program(threat: Threat, budget: Budget, known: LargestGroup | None = None) -> LargestGroup:
     """Smallest largest group of any graph; the incumbent is recomputed on the graph, the bound from the multipliers.
@@ -87,8 +82,12 @@ class _Model:
         self.rows.append((columns, values))
         self.sides.append(lower)
 
-    def add_violated(self, x: FloatArray) -> bool:
-        """Add the inequalities that ``x`` violates most; return whether there is any."""
+    def add_violated(self, x: FloatArray, least: float = 1e-4, most: int = 400) -> bool:
+        """Add the inequalities that ``x`` violates most; return whether there is any.
+
+        ``least`` : violations by less are left: far above HiGHS's feasibility tolerance, so that rounds end
+        ``most`` : added at once; fewer make more rounds, more make larger programs
+        """
         matrix = x[self.column]
         np.fill_diagonal(matrix, 1.0)
         found = []
@@ -98,8 +97,8 @@ class _Model:
             for a, b in ((i, j), (j, i)):
                 excess = x[self.column[i, j]] + matrix[b] - 1 - matrix[a]
                 excess[[a, b]] = 0.0
-                found += [(-float(excess[k]), a, b, int(k)) for k in np.flatnonzero(excess > VIOLATION)]
-        fresh = [one for one in sorted(found)[:LARGEST_ROUND] if one[1:] not in self._known]
+                found += [(-float(excess[k]), a, b, int(k)) for k in np.flatnonzero(excess > least)]
+        fresh = [one for one in sorted(found)[:most] if one[1:] not in self._known]
         for _, a, b, k in fresh:
             self._known.add((a, b, k))
             columns = [int(self.column[a, k]), int(self.column[a, b]), int(self.column[b, k])]

@@ -38,8 +38,6 @@ TREES = "tree inequalities of a linear program, recomputed from their multiplier
 
 SCALE = 2.0**24
 """Multipliers become integers in these units: the sums below stay under 2^63."""
-SHORT = 1e-7
-"""Least length of a link: shortest paths then have few links."""
 DEFAULT = TreeParams()
 """Parameters of programs that are not given any."""
 
@@ -138,7 +136,8 @@ class TreeProgram:
         from scipy.sparse import csr_array  # a quarter of a second
         from scipy.sparse.csgraph import dijkstra
 
-        length, blind = np.maximum(point[: self.n_links], 0.0) + SHORT, point[self.n_links :]
+        short = 1e-7  # least length of a link: shortest paths then have few links
+        length, blind = np.maximum(point[: self.n_links], 0.0) + short, point[self.n_links :]
         sides = (np.concatenate([self.ends[:, 0], self.ends[:, 1]]), np.concatenate([self.ends[:, 1], self.ends[:, 0]]))
         graph = csr_array((np.concatenate([length, length]), sides), shape=(self.n_robots, self.n_robots))
         distance, before = dijkstra(graph, return_predecessors=True, limit=1.0)

@@ -39,11 +39,6 @@ if TYPE_CHECKING:
 
 __all__ = ["MARGIN", "marginal_ends"]
 
-ROUNDS = 12
-"""Linear programs for the weights of ``tau``: 3, 6, 12, 24 leave it 2.9, 0.5, 0.02, 0 % above the last, in time that
-doubles (48 elements of 8 owners, 6 targets in three coordinates)."""
-CUTS = 5
-"""Worst targets that get a cut a round: with 2 instead of 5 ``tau`` is 1 % higher, in the same time."""
 MARGIN = 1e-9
 """Relative safety margin for rounding."""
 
@@ -101,18 +96,25 @@ def _tau(f: Levels, owners: IntArray, budget: Budget) -> FloatArray:
     return np.asarray(total - best + combined)
 
 
-def _cuts(f: Levels, groups: list[IntArray], budget: Budget) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Cuts ``constant + scores[e] + ...`` above the levels, and weights that make them strong."""
+def _cuts(
+    f: Levels, groups: list[IntArray], budget: Budget, rounds: int = 12, targets: int = 5
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Cuts ``constant + scores[e] + ...`` above the levels, and weights that make them strong.
+
+    ``rounds`` : linear programs for the weights of ``tau``; 3, 6, 12, 24 leave it 2.9, 0.5, 0.02, 0 % above the last,
+        in time that doubles
+    ``targets`` : worst ones that get a cut in a round; with 2 instead of 5 ``tau`` is 1 % higher, in the same time
+    """
     n = f.n
     one_each = rows_of([(own.tolist(), [1.0] * len(own)) for own in groups], 1.0, 1.0)
     program = LinearProgram([*[0.0] * n, -1.0], [*[0.0] * n, -inf], [*[1.0] * n, inf], rows=one_each)
     point = np.concatenate([np.full(len(own), 1 / len(own)) for own in groups])[np.argsort(np.concatenate(groups))]
     scores, constants = np.empty((0, n)), np.empty(0)
     multipliers = np.empty(0)
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         posterior = f.prior_information + np.tensordot(point, f.information, axes=1)
         least, axes = f.weakest_axes(posterior)
-        worst = np.argsort(least / f.weights, kind="stable")[:CUTS]
+        worst = np.argsort(least / f.weights, kind="stable")[:targets]
         v = axes[worst]
         quadratic = np.einsum("ca,ecab,cb->ce", v, f.information[:, worst], v) / f.weights[worst, None]
         start = np.einsum("ca,cab,cb->c", v, f.prior_information[worst], v) / f.weights[worst]

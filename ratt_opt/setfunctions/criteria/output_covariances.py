@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._blocks import blocks
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import loops
 
@@ -14,9 +15,6 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
 
 __all__ = ["output_covariances", "output_traces"]
-
-AT_ONCE = 4_000_000
-"""Multiplications, about, in one call: some milliseconds."""
 
 
 def output_traces(matrices: FloatArray, output: FloatArray) -> FloatArray:
@@ -35,8 +33,7 @@ def output_covariances(matrices: FloatArray, output: FloatArray) -> FloatArray:
     own = checked("output", np.ascontiguousarray(output), np.float64, (targets, q, d))
     found, spare = np.empty((len(flat), targets, q, q)), np.empty((d + q, d))
     given, where, others = address(flat), address(found), (address(own), address(spare))
-    step = max(AT_ONCE // max(targets * d**3, 1), 1)
-    for first in range(0, len(flat), step):
+    for first, last in blocks(len(flat), targets * d**3):
         some, to = given + first * flat.strides[0], where + first * found.strides[0]
-        loops.output_covariances(min(step, len(flat) - first), targets, q, d, some, *others, to)
+        loops.output_covariances(last - first, targets, q, d, some, *others, to)
     return found.reshape(*matrices.shape[:-2], q, q)

@@ -43,12 +43,6 @@ if TYPE_CHECKING:
 
 __all__ = ["TraceObjective"]
 
-PRIOR_SHARE = 0.25
-"""``t_0`` above; the owners share the rest. It trades contexts without an owner against full ones;
-from 0.1 to 0.6 the brackets of 10 robots do not move in the fourth digit, with stretched priors either."""
-MARGIN = 1e-11
-"""Relative safety margin for rounding on the largest marginals."""
-
 
 class TraceObjective(InformationObjective):
     """``sum_j w_j [tr(prior_j) - tr(Lambda_j(S)^{-1})]``: decrease of the mean square error (A-criterion) [m^2].
@@ -143,7 +137,8 @@ class TraceObjective(InformationObjective):
     def _larger_of(self, alone: FloatArray, q: FloatArray, largest: FloatArray) -> FloatArray:
         """(..., M) the larger marginal: of ``alone``, and of lower rank by ``q`` (..., M, d - 1) and ``largest``."""
         lower_rank = self.weights * largest * (q / (1 + q)).sum(axis=-1)
-        return np.asarray(np.maximum(alone, lower_rank) * (1 + MARGIN))
+        margin = 1e-11  # for rounding
+        return np.asarray(np.maximum(alone, lower_rank) * (1 + margin))
 
     def conic_value(self, posterior: Sequence[Any]) -> Any:
         """``sum_j w_j [tr(C prior_j C') - sum_q c_q' L_j^{-1} c_q]`` in cvxpy."""
@@ -188,9 +183,18 @@ class TraceObjective(InformationObjective):
         return SeparableMinorant(float(constant) - upper.constant, score + upper.score, upper.absent)
 
     def _inverse_majorant(
-        self, others: OtherElements, share: FloatArray, axes: FloatArray, strength: FloatArray
+        self,
+        others: OtherElements,
+        share: FloatArray,
+        axes: FloatArray,
+        strength: FloatArray,
+        prior_share: float = 0.25,
     ) -> SeparableMinorant:
-        """``sum_jk strength[j, k] n_jk' L^{-1} n_jk <= constant + sum of scores``, ``n_jk`` the columns of ``axes``."""
+        """``sum_jk strength[j, k] n_jk' L^{-1} n_jk <= constant + sum of scores``, ``n_jk`` the columns of ``axes``.
+
+        ``prior_share`` : ``t_0`` above; the owners share the rest. It trades contexts without an owner against full
+        ones; from 0.1 to 0.6 the brackets of 10 robots do not move in the fourth digit, with stretched priors either
+        """
         weighted = share[:, None] * others.regular
         mass = np.add.reduceat(weighted, others.first, axis=0)
         mean_inverse = np.add.reduceat(weighted[..., None, None] * others.inverse, others.first, axis=0)
@@ -203,11 +207,11 @@ class TraceObjective(InformationObjective):
         cost = np.einsum("rmak,mab,rmbk,mk->rm", flow, self.prior, flow, strength, optimize=True)
         # t_i in proportion to the root of the cost makes the sum of the reserves smallest.
         root = np.sqrt(np.maximum(cost, 0.0))
-        reserve = root * root.sum(axis=0) / (1 - PRIOR_SHARE)
+        reserve = root * root.sum(axis=0) / (1 - prior_share)
         outer = np.einsum("rmak,mk,rmbk->rmab", flow, strength, flow, optimize=True)
         own = (others.inverse * outer[others.owners]).sum(axis=(-1, -2))
         kept = np.where(others.regular, np.minimum(own, reserve[others.owners]), reserve[others.owners]).sum(axis=-1)
-        constant = float(np.einsum("mak,mab,mbk,mk->", rest, self.prior, rest, strength)) / PRIOR_SHARE
+        constant = float(np.einsum("mak,mab,mbk,mk->", rest, self.prior, rest, strength)) / prior_share
         return SeparableMinorant(constant, kept, reserve.sum(axis=-1))
 
 

@@ -10,6 +10,7 @@ import pytest
 from scipy.optimize import linprog
 
 import ratt_opt as ro
+from ratt_opt import _blocks
 from ratt_opt.budget import Budget
 from ratt_opt.curvatures.params import PlanarParams
 from ratt_opt.curvatures.planar import ceilings as ceilings_module
@@ -272,7 +273,7 @@ def test_sums_over_owners_of_their_largest_option(shape, monkeypatch):
     values = levels[:, :, None] - slopes[:, None, None] * own
     largest = [values[:, owners == one].max(axis=1) for one in np.unique(owners)]
     for terms in (10**6, 1):
-        monkeypatch.setattr(ceilings_module, "TERMS", terms)
+        monkeypatch.setattr(_blocks, "STEPS", terms)
         sums, sizes = ceilings_module._sums_of_largest(owners, levels, slopes, own)
         assert sums == pytest.approx(sum(largest, np.zeros((rows, places))))
         assert sizes == pytest.approx(sum(map(np.abs, largest), np.zeros((rows, places))))

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ratt_opt import InputError
-from ratt_opt.setfunctions.criteria import output_covariances as module
+from ratt_opt import InputError, _blocks
 from ratt_opt.setfunctions.criteria.output_covariances import output_covariances, output_traces
 
 SHAPES = [(1, 1, 1), (0, 2, 3, 1), (5, 0, 2, 1), (3, 1, 2, 2), (2, 3, 2, 4, 2), (7, 3, 6, 1), (2, 1, 9, 3)]
@@ -17,7 +16,7 @@ SHAPES = [(1, 1, 1), (0, 2, 3, 1), (5, 0, 2, 1), (3, 1, 2, 2), (2, 3, 2, 4, 2), 
 @pytest.mark.parametrize("at_once", [1, 10**6])
 def test_covariances_are_those_of_the_definition(shape, at_once, monkeypatch):
     """Dimensions of which C has loops of their own, and others."""
-    monkeypatch.setattr(module, "AT_ONCE", at_once)
+    monkeypatch.setattr(_blocks, "STEPS", at_once)
     *batch, targets, d, q = shape
     rng = np.random.default_rng(d)
     for scale in (1e-6, 1.0, 1e6):

@@ -1,0 +1,20 @@
+"""Long loops in parts of some milliseconds, so that the clock is looked at in between and arrays stay in cache."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+__all__ = ["blocks"]
+
+STEPS = 1 << 22
+"""Multiplications or comparisons of numbers in a part: some milliseconds."""
+
+
+def blocks(count: int, each: int) -> Iterator[tuple[int, int]]:
+    """First and last item (exclusive) of each part of a loop over ``count`` items that take ``each`` steps."""
+    size = max(STEPS // max(each, 1), 1)
+    for first in range(0, count, size):
+        yield first, min(first + size, count)
