@@ -10,8 +10,22 @@ import ratt_opt as ro
 from ratt_opt.attack.bounds import forced_survivors
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attack.engine import watch
-from tests.brackets import attains
-from tests.strategies import OBJECTIVES, OwnTrace, information_data, random_problem
+from tests.brackets import attains, is_exact
+from tests.strategies import OBJECTIVES, OwnTrace, information_data, random_problem, range_bearing
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("name", OBJECTIVES)
+def test_fourteen_robots_on_a_sparse_graph_close(name, seed):
+    rng = np.random.default_rng(seed)
+    graph = nx.random_regular_graph(3, 14, seed=seed)
+    problem = ro.Problem(OBJECTIVES[name](*range_bearing(rng, 14, 4, 1)), np.arange(14), graph, 2, 6)
+    plan = np.arange(14)
+    result = ro.worst_case_attack(problem, plan)
+    assert is_exact(problem, plan, result)
+    assert result.upper <= min(ro.greedy_attack(problem, plan).upper, ro.bounded_rational_attack(problem, plan).upper)
+    for seed_of_attack in range(200):
+        assert result.upper <= ro.random_attack(problem, plan, seed=seed_of_attack).upper + 1e-12
 
 
 @pytest.mark.parametrize("seed", range(100))

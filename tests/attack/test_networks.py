@@ -53,6 +53,21 @@ def test_thirty_robots_on_a_disk_graph_close(name):
     assert (again.attack, again.nodes) == (result.attack, result.nodes)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_relabelling_changes_nothing(seed):
+    rng = np.random.default_rng(seed)
+    prior, information = range_bearing(rng, 24, 6, 1)
+    graph, order = disk_graph(seed, 24, 5), rng.permutation(24)
+    moved = np.empty_like(information)
+    moved[order] = information
+    renamed = nx.relabel_nodes(graph, dict(enumerate(order.tolist())))
+    values = [
+        ro.worst_case_attack(ro.Problem(ro.LogDetObjective(prior, data), np.arange(24), g, 4, 8), np.arange(24)).upper
+        for data, g in ((information, graph), (moved, renamed))
+    ]
+    assert values[0] == pytest.approx(values[1], rel=1e-9)
+
+
 @pytest.mark.parametrize("calls", [1, 2, 5, 20])
 def test_an_interrupt_returns_the_bracket_reached(calls, monkeypatch):
     rng = np.random.default_rng(2)
