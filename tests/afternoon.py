@@ -1,19 +1,13 @@
 """A robotics engineer's afternoon as a script: what test_afternoon.py runs, and whose lines it counts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 import ratt_opt as ro
-from ratt_opt.studies import mission_study
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ratt_opt.studies import Results
+from ratt_opt.studies import Results, mission_study
 
 MODEL = ro.MissionModel(motion="constant velocity")
 

@@ -1,7 +1,5 @@
 """Brackets of attacks: published ends are those computed, moved apart by what computing them may have rounded."""
 
-from __future__ import annotations
-
 import pytest
 
 import ratt_opt as ro

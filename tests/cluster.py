@@ -1,22 +1,17 @@
 """A Dask scheduler and its workers as processes of their own, on this machine."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from tests.documents import ROOT
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
 

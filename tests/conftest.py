@@ -1,16 +1,11 @@
 """What every test may rely on."""
 
-from __future__ import annotations
-
 import signal
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 SHORT_TIER = Path(__file__).parent / "short_tier.txt"
 """Test functions of which the short tier runs some cases, or none: they cost much and find little that others miss.

@@ -1,14 +1,9 @@
 """The pages that people write: README and docs, without what the site is made of besides."""
 
-from __future__ import annotations
-
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["ROOT", "Block", "blocks", "documents"]
 

@@ -3,8 +3,6 @@
 To be used with ``ctx.workdps(DIGITS)``.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 from flint import arb, fmpq, fmpq_mat

@@ -1,14 +1,10 @@
 """Extreme values of every field of a class of parameters, for tests of what holds whatever they are."""
 
-from __future__ import annotations
-
+from collections.abc import Container, Iterator
 from dataclasses import fields, is_dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ratt_opt import InputError
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Iterator
 
 
 def places(params: Any, prefix: str = "") -> list[str]:

@@ -1,11 +1,7 @@
 """Ctrl-C at a chosen moment of a search."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from collections.abc import Callable
+from typing import Any
 
 __all__ = ["INTERRUPTED_IMPORTS", "interrupted_at"]
 

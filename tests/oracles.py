@@ -1,7 +1,5 @@
 """Answers straight from the definitions, for small instances; share no algorithm with the library."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 
 import networkx as nx

@@ -5,8 +5,6 @@ Every builder takes ``rng``. A seeded loop passes ``np.random.default_rng(seed)`
 elements and small round numbers, where equal elements, useless robots and rank-one information are the rule.
 """
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 

@@ -1,10 +1,10 @@
 """A robotics engineer's afternoon, by the script beside: it works, and in how many lines."""
 
-from __future__ import annotations
-
 import inspect
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +12,6 @@ from scipy.stats import chi2
 
 import ratt_opt as ro
 from tests.afternoon import MODEL, compare, fly, nearest, protect, replay, seen, team
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
 
 
 def code_lines(*functions: Callable[..., Any]) -> int:

@@ -1,7 +1,5 @@
 """What the library is given is copied: arrays, lists, sets and graphs that their owner changes later change nothing."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

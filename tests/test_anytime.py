@@ -1,7 +1,5 @@
 """Any budget, any limit, any input: brackets are valid, closed where plans are few, and never empty."""
 
-from __future__ import annotations
-
 import time
 
 import networkx as nx

@@ -1,7 +1,5 @@
 """Tests ask public names: which inner modules they name is listed, and lies beside them; folders mirror the package."""
 
-from __future__ import annotations
-
 import ast
 import re
 import tomllib

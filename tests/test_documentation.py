@@ -6,8 +6,6 @@ command prints; ``table: COMMAND``, the same for a table; ``elsewhere: FILE``, t
 takes minutes; ``needs: PACKAGE``, the rest of the page is skipped without that package of an extra.
 """
 
-from __future__ import annotations
-
 import ast
 import csv
 import json
@@ -17,7 +15,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -33,9 +31,6 @@ from ratt_opt import (
     worst_case_attack,
 )
 from tests.documents import ROOT, Block, blocks, documents
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 RESULT = re.compile(r"^(?P<expression>[^#\s][^#\n]*?)\s+# (?P<numbers>-?[\d.]+(?:, -?[\d.]+)*)(?: \D*)?$", re.MULTILINE)
 """A line such as ``f(x), g(x)  # 0.25, 3``: what the expression gives, to the digits shown."""

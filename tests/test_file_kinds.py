@@ -1,19 +1,14 @@
 """Output replaces regular files only: whatever else is there stays, and nothing is computed first."""
 
-from __future__ import annotations
-
 import os
 import socket
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from ratt_opt import InputError, random_scenario, save_scenario
 from ratt_opt._files import output_file, write_json
 from ratt_opt.cli import run
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def _make(kind: str, path: Path) -> None:

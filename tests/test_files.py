@@ -1,20 +1,15 @@
 """Files are written whole or not at all."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from ratt_opt import InputError
 from ratt_opt._files import output_directory, write_atomically, write_json, write_together
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """The adapter to HiGHS."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

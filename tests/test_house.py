@@ -1,7 +1,5 @@
 """Rules of all modules: one value a constant, one meaning a class name, no import circle (types included)."""
 
-from __future__ import annotations
-
 import ast
 from collections import Counter
 from pathlib import Path

@@ -5,8 +5,6 @@ extreme data. Interrupts stand in ``test_limits.py``, custom functions in ``solv
 ties and zeros in ``test_anytime.py``.
 """
 
-from __future__ import annotations
-
 import os
 import random
 import time

@@ -1,7 +1,5 @@
 """Every public search keeps its time limit and answers interrupts: one row each, and none is missing."""
 
-from __future__ import annotations
-
 import inspect
 import random
 import signal

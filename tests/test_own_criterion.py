@@ -1,7 +1,5 @@
 """A user's own information criterion, defined here by a value and a supergradient alone, goes through the library."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

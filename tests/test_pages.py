@@ -1,19 +1,14 @@
 """The pages lead somewhere: every link has a target, and the distribution holds what they speak of."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
 import tarfile
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from tests.documents import ROOT, documents
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 PAGES = [ROOT / "CHANGELOG.md", *documents()]
 TOCTREE = re.compile(r"^```{toctree}\n(?P<entries>.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -1,7 +1,5 @@
 """Problem, attack and plan: meanings and refusals."""
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

@@ -1,7 +1,5 @@
 """The recipes of docs/contributors/recipes.md, done: a criterion, attacker, guarantee and sensor of one's own."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,10 +1,8 @@
 """Printed brackets hold the brackets, printed gaps are no smaller than the gaps."""
 
-from __future__ import annotations
-
 import re
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given
@@ -15,9 +13,6 @@ from ratt_opt import Attack, AttackResult, Stop, Verified
 from ratt_opt._rounding import bracket_text, down, gap_text, relative_gap, up
 from ratt_opt.report.tables import attack_tables, share_text
 from tests.strategies import DIGITS, FLOATS, NEARLY_CLOSED, POSITIVE, close_above
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
 

@@ -4,8 +4,6 @@ An improvement below the rounding of what values were subtracted from once sent 
 small for the next step was neither spent nor left.
 """
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

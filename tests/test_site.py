@@ -1,7 +1,5 @@
 """The documentation site: made without a warning, with every public name; links lead somewhere, nothing is fetched."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import re

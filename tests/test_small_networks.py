@@ -4,8 +4,6 @@ The definition lists every set of links an attack may cut and every set of robot
 the cheapest cut that leaves each family of groups follow the worst cases at all budgets.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import combinations, product
 

@@ -1,17 +1,12 @@
 """One name for each planner and attacker; former ones are read, with a warning."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 import ratt_opt as ro
 from ratt_opt.cli import run as command
 from ratt_opt.studies import ATTACKERS, PLANNERS, Case, Study, read_table, run
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 CASE = Case(n_robots=3, n_targets=2, alpha_s=1, alpha_c=1)
 

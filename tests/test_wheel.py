@@ -1,7 +1,5 @@
 """What users install: the built wheel, in an environment of its own, outside the source tree."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

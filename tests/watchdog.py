@@ -1,15 +1,10 @@
 """A limit on the processor's seconds, for searches that must end by themselves."""
 
-from __future__ import annotations
-
 import signal
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import pytest
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["NotBackError", "ends_within"]
 

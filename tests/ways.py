@@ -4,17 +4,14 @@ A way is a table ``{(module, name): value}``, or ``{(AttackParams, "family.name"
 of best plans, that are not given other parameters; each family has its own in its ``engine.py``.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pytest
 
 from ratt_opt import AttackParams, MaxMinParams
 from ratt_opt.attack import params as of_attacks
 from ratt_opt.solvers.maxmin import params as of_plans
-
-if TYPE_CHECKING:
-    import pytest
 
 __all__ = ["Way", "go", "with_params"]
 

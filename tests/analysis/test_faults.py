@@ -1,11 +1,11 @@
 """A seeded sample of the fault campaign, and that the campaign finds the faults it looks for."""
 
-from __future__ import annotations
-
 import json
 import sys
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from flint import arb
 
@@ -17,11 +17,6 @@ from analysis.faults.kinds import KINDS
 from analysis.faults.processes import PROCESSES
 from analysis.faults.results import check_results, earlier_results
 from analysis.faults.truth import truth
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import numpy as np
 
 SAMPLED = {"full disk in bound": 2, "interrupt of bound": 2} | dict.fromkeys(PROCESSES, 2)
 """How many cases of the kinds that take long; 20 of the others."""

@@ -1,7 +1,5 @@
 """The golden corpus: its comparison notices what it is for, and a sample of it is answered as it was."""
 
-from __future__ import annotations
-
 import pytest
 
 from analysis.golden.comparison import apart, compared, lost, read_rows

@@ -1,7 +1,5 @@
 """Pages show the measured values of the file; a value that is off is noticed."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Notebooks against what is stored: what counts as another output, and what all of them have."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

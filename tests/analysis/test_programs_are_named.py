@@ -1,7 +1,5 @@
 """Every program of `analysis` is named on a page, in the gate or in a test: what nobody runs is a result."""
 
-from __future__ import annotations
-
 from tests.documents import ROOT
 
 PLACES = ("README.md", "CONTRIBUTING.md", ".pre-commit-config.yaml", "docs/measured.toml", ".ci/run")

@@ -1,16 +1,11 @@
 """The linter of the English of pages, docstrings and messages: it finds what it should, and nothing is left."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from analysis import prose
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 LONG = " ".join(["word"] * prose.LONGEST)
 

@@ -1,18 +1,13 @@
 """The command that tests the wheel on every Python: what it looks for, and what it calls a failure."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from analysis import pythons
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def test_it_finds_this_interpreter_and_no_other_version() -> None:

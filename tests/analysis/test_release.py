@@ -1,7 +1,5 @@
 """What a release consists of: two files that install without a network, a recipe, a citation, forms."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

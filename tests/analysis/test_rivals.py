@@ -1,7 +1,5 @@
 """The benchmark against rivals: its families, and rivals that are right on instances small enough to enumerate."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rows of a study are printed and written in full."""
 
-from __future__ import annotations
-
 import csv
 
 from analysis.tables import print_table, write_csv

@@ -1,7 +1,5 @@
 """The short tier: what pytest leaves out, how it is chosen, and the faults that it must find."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os
@@ -9,8 +7,9 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -36,10 +35,6 @@ from analysis.test_tier.choose import (
 from analysis.test_tier.mutants import Mutant, python_mutants
 from analysis.test_tier.reached_lines import Reach, collect, load, merged, save
 from tests.documents import ROOT
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 TESTS_OF_EACH_KIND = """
 import pathlib

@@ -1,17 +1,12 @@
 """A stranger's walk: the jobs of the page, their lines of code, and what the walk calls a fault; the gate walks it."""
 
-from __future__ import annotations
-
 import os
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from analysis import walk
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 JOBS = {job.name: job for job in walk.jobs_of((walk.ROOT / walk.PAGE).read_text(encoding="utf-8"))}
 

@@ -11,8 +11,6 @@ Needs are found by trying who is blinded, the strongest robots first, and inheri
 non-decreasing criteria. Their formulas stand here once more.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import csr_array, vstack

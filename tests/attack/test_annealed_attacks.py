@@ -1,7 +1,5 @@
 """Quick attacks on one plan after the other, on any graph."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Attacks that go on where an earlier one on the same plan ended."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Blinded robots on submodular functions: both ends against all attacks, any limit, and false words refuted."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -4,25 +4,19 @@ A share of a budget can end within any stage, and the next stage, or the next ca
 what is left of it. So whatever a search had in hand when it ended must still count as open.
 """
 
-from __future__ import annotations
-
 import random
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import networkx as nx
 import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt import Stop
 from ratt_opt.budget import Budget
 from tests.attack.engine import LARGE, WAYS, AttackMemory
 from tests.strategies import random_problem, team_problem
 from tests.ways import go
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ratt_opt import Stop
 
 SECONDS = 1000.0
 """Of every limit: it is chance that ends them."""

@@ -1,7 +1,5 @@
 """The attack on a plan whose robots are all alike is the cut that leaves the smallest largest group."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Worst attacks on networks that are larger than the definition reaches: closed, true, the same for other labels."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

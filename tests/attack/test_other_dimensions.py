@@ -1,7 +1,5 @@
 """Exact attackers of larger teams for targets not in the plane, run on teams small enough for the definition."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -1,10 +1,9 @@
 """Extreme parameters of attacks: brackets hold, limits are kept; what nothing could go on with is refused."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -17,9 +16,6 @@ from ratt_opt.attack.params import AT_LEAST_ONE
 from tests.oracles import brute_force_worst_case
 from tests.strategies import OBJECTIVES
 from tests.watchdog import ends_within
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 TEMPERATURES = ("hot", "warm", "cold")
 

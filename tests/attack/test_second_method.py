@@ -1,7 +1,5 @@
 """The exact attacker of larger teams against a second exact method, at sizes far beyond the definition."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A library of three small instances with records, made anew: a plan, an attack and a cut."""
 
-from __future__ import annotations
-
 import json
 
 import networkx as nx

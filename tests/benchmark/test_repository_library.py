@@ -1,7 +1,5 @@
 """The library of the repository: its index, its records, and a first look in two minutes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Every guarantee against what RATT really keeps, on small problems solved by enumeration."""
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

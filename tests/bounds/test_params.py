@@ -1,7 +1,5 @@
 """Parameters of bounds: whatever they are, no bound is false."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import networkx as nx

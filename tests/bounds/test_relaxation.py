@@ -1,7 +1,5 @@
 """The conic relaxation: its re-derived bound is true, tight where convexity is, and never the solver's word."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Small certified problems, and certificates made without the solver."""
 
-from __future__ import annotations
-
 import json
 
 import networkx as nx

@@ -1,21 +1,16 @@
 """Every certificate that these tests write keeps to its schema."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
 
+from ratt_opt import Verified
 from ratt_opt.report.schemas import output_schema
 from tests.certificates.engine import step
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
-
-    from ratt_opt import Verified
 
 LARGEST = 50_000
 """Bytes of a file that is looked at: of larger ones, which hold more of the same, it would take seconds."""

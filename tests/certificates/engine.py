@@ -4,8 +4,6 @@ What a proof shows is asked here, or of ``certify`` and ``verify_certificate``. 
 modules; so do, beside an inner part, the tests that compare it with the definition.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import networkx as nx

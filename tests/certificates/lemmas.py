@@ -1,7 +1,5 @@
 """Proofs by rows of single targets, made without the solver: small problems, lemmas of all kinds, spaced values."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from itertools import product

@@ -1,7 +1,5 @@
 """Certificates with one field changed, and whether what they claim is still true."""
 
-from __future__ import annotations
-
 import copy
 import json
 from warnings import catch_warnings, filterwarnings

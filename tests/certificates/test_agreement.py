@@ -1,7 +1,5 @@
 """Certificates travel: the same scenario on another machine is the same problem, changed data are not."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

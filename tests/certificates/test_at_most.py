@@ -1,7 +1,5 @@
 """Certificates of teams in which few robots may choose: proved, checked against all plans, and corrupted."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Certificates prove what the exhaustive optimum and brute-force attacks say, and nothing more."""
 
-from __future__ import annotations
-
 import json
 import math
 

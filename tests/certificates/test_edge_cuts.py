@@ -1,7 +1,5 @@
 """Certificates of fewest cuts: what is written is proved, and a forged one is refused."""
 
-from __future__ import annotations
-
 import json
 from copy import deepcopy
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Proofs in words: the guide's example as it is printed, long trees cut short, every conclusion and node."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

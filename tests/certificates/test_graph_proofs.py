@@ -1,7 +1,5 @@
 """Every kind of proof of a worst case on a graph: against brute force, the exact attacker, and mutations."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,10 +1,8 @@
 """Parameters of certificates and limits of their check: whatever they are, no false claim is proved."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -14,9 +12,6 @@ from ratt_opt.certificates.params import AT_LEAST_ONE
 from ratt_opt.cli import run
 from ratt_opt.errors import UndecidedError
 from tests.extremes import at_extremes, places, with_one
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @cache

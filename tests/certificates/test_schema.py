@@ -1,11 +1,11 @@
 """The schema of certificates says what the verifier reads: no less than it accepts, and nothing that no file holds."""
 
-from __future__ import annotations
-
 import copy
 import json
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
+import jsonschema
 import networkx as nx
 import numpy as np
 import pytest
@@ -24,11 +24,6 @@ from ratt_opt import (
 )
 from tests.certificates.engine import ENUMERATED, proof
 from tests.strategies import information_data
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import jsonschema
 
 PRIOR, INFORMATION = information_data(np.random.default_rng(4), 6, 2)
 WEIGHTS = [1.0, 3.0]

@@ -1,7 +1,5 @@
 """Lower ends proved by sizes of groups: what sizes and cases claim by definition, dense graphs, and faults by name."""
 
-from __future__ import annotations
-
 import copy
 from itertools import combinations
 

@@ -1,15 +1,10 @@
 """A scenario file that the commands read."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from ratt_opt import random_scenario, save_scenario
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @pytest.fixture

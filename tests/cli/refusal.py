@@ -1,13 +1,8 @@
 """What every refusal of the command line looks like."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+import pytest
 
 from ratt_opt.cli import run
-
-if TYPE_CHECKING:
-    import pytest
 
 
 def refused(arguments: list[str], capsys: pytest.CaptureFixture[str], text: str) -> None:

@@ -1,7 +1,5 @@
 """``ratt-opt audit`` as a stranger uses it: files, progress on a terminal, an interrupt that keeps what was decided."""
 
-from __future__ import annotations
-
 import json
 import os
 import pty
@@ -9,18 +7,15 @@ import re
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 from contextlib import suppress
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from ratt_audit import ledger
 from ratt_audit.entries import all_entries
 from ratt_opt.cli import run
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 LABELS = ("nd_p1d1v1_7", "nd_p1d1v1_8", "nd1")
 

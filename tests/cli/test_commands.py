@@ -1,10 +1,9 @@
 """The command line as a stranger uses it: files, tables, JSON, refusals in one line with exit code 2."""
 
-from __future__ import annotations
-
 import json
 import os
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -28,9 +27,6 @@ from ratt_opt.report.schemas import output_schema
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
 from tests.certificates.engine import step
 from tests.cli.refusal import refused
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 REPORT_FIELDS = {
     "format", "version", "n_robots", "n_targets", "objective", "alpha_s", "alpha_c", "n_max", "alpha_cs", "ratt",

@@ -1,7 +1,5 @@
 """``ratt-opt cuts``: both questions, files as others write them, JSON, and what is refused."""
 
-from __future__ import annotations
-
 import json
 
 import networkx as nx

@@ -1,13 +1,13 @@
 """What programs rely on: exit codes, closed and full outputs, faults of the program, text that is only text."""
 
-from __future__ import annotations
-
 import io
 import json
 import os
 import subprocess
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.table import Table
@@ -16,10 +16,6 @@ from ratt_opt import InputError, LogDetObjective, Problem, certify, solve_maxmin
 from ratt_opt.cli import run
 from ratt_opt.cli.terminal import print_tables
 from ratt_opt.errors import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 PROGRAM = [sys.executable, "-c", "from ratt_opt.cli import main; main()"]
 

@@ -4,21 +4,17 @@ Refused is one line that names the field; handled is a bracket whose certificate
 plan.
 """
 
-from __future__ import annotations
-
 import json
+from collections.abc import Iterator
 from copy import deepcopy
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import ratt_opt as ro
 from ratt_opt.cli import run
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 OBJECTIVES = ("trace", "logdet", "maxeig")
 ENDS = [0, 5e-324, 1e-100, 1e-12, 1e-10, 1e-6, 1e-3, 1e3, 1e6, 1e8, 1e10, 1e12, 2e14, 1e100]

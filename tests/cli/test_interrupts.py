@@ -1,7 +1,5 @@
 """An interrupt at any moment ends the program with 130 and one line, and is never lost."""
 
-from __future__ import annotations
-
 import gc
 import signal
 import subprocess

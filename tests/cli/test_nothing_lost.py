@@ -1,11 +1,11 @@
 """A report is never lost: whatever becomes of the certificate, and whenever the user interrupts."""
 
-from __future__ import annotations
-
 import json
 import os
+from collections.abc import Callable
+from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -16,10 +16,6 @@ from tests.certificates import engine as certifying
 from tests.certificates.engine import UndecidedError
 from tests.interrupts import interrupted_at
 from tests.main_job.engine import SEARCHES, step
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
 
 
 def _report(folder: Path) -> Any:

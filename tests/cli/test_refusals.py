@@ -1,16 +1,11 @@
 """Bad command lines and plans are refused in one line, with exit code 2 and nothing written."""
 
-from __future__ import annotations
-
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from tests.cli.refusal import refused
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 NEW = ["new", "--sensing-attacks", "1", "--link-attacks", "1", "--out", "OUT/s.json"]
 BAD = [

@@ -1,13 +1,12 @@
 """What programs read is what the schemas say: every output, every field."""
 
-from __future__ import annotations
-
 import inspect
 import json
 import re
+from collections.abc import Iterator
 from copy import deepcopy
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jsonschema
 import pytest
@@ -20,9 +19,6 @@ from ratt_opt.cli.program import ERRORS, app
 from ratt_opt.report.schemas import OUTPUTS, output_schema
 from tests.interrupts import interrupted_at
 from tests.main_job.engine import step
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 VALIDATOR = jsonschema.Draft202012Validator
 

@@ -1,7 +1,5 @@
 """Whatever the machine is like: locales, terminals, streams, homes."""
 
-from __future__ import annotations
-
 import fcntl
 import json
 import os
@@ -10,14 +8,11 @@ import struct
 import subprocess
 import sys
 import termios
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from ratt_opt import random_scenario, save_scenario
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 PROGRAM = [sys.executable, "-c", "from ratt_opt.cli import main; main()"]
 

@@ -1,7 +1,5 @@
 """Coordinates that nothing measures are left out: values, attacks and plans stay, and proofs are of all coordinates."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Brackets where information is semidefinite only up to rounding, or to what the input rule admits."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

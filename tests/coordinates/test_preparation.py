@@ -1,7 +1,5 @@
 """One door: public searches prepare a problem, write nothing into it, and their ends hold the exact values tightly."""
 
-from __future__ import annotations
-
 import gc
 import weakref
 from dataclasses import replace

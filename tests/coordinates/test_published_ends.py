@@ -1,7 +1,5 @@
 """Every published end holds the exact value of the matrices as given, whatever the prior's condition."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 

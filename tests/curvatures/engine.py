@@ -1,7 +1,5 @@
 """Ways of searching curvatures as tests know them; what a search answers is asked of the public functions."""
 
-from __future__ import annotations
-
 from ratt_opt import CurvatureParams
 
 __all__ = ["FEW_PAIRS", "SEARCHED"]

@@ -1,7 +1,5 @@
 """Curvatures against their definitions, and brackets against exact values."""
 
-from __future__ import annotations
-
 import pickle
 from itertools import product
 

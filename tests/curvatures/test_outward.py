@@ -1,7 +1,5 @@
 """No end of a curvature or ratio goes beyond the exact value: of rationals, or of balls where values are irrational."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

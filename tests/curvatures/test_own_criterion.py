@@ -1,7 +1,5 @@
 """A criterion that the library does not know: exact where sets can be listed, honestly wide beyond, never refused."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Submodularity ratio and generalised curvature against their definitions over all pairs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

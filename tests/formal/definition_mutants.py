@@ -4,8 +4,6 @@
 where each is noticed, the changes that nothing notices, and how many there are of each kind.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

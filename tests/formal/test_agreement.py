@@ -3,8 +3,6 @@
 Kinds of refusal (a fault, no certificate) may differ; acceptance, and of which ends, may not.
 """
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The definitions in Coq and Python agree: values proved in formal/theories/Examples*.v, computed again here."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Every theorem that formal/README.md names is one whose assumptions are printed and checked, and exists."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Lemmas of single targets, rows and spaced values: the extracted checker and the Python verifier decide alike."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 

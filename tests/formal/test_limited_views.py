@@ -1,7 +1,5 @@
 """The extracted checker and the Python verifier on upper ends by covers and by gains, where robots see few targets."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The extracted checker and the Python verifier where a part of the state counts."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

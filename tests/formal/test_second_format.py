@@ -3,8 +3,6 @@
 Robots have one coordinate and a unit of information each: robots S are worth 1 - 1 / (1 + |S|).
 """
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The extracted checker and the Python verifier on the same files."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

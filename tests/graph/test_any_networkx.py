@@ -1,7 +1,5 @@
 """Any networkx graph as a communication graph: the stated rule, on drawn graphs of every kind and kind of node."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import networkx as nx

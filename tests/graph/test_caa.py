@@ -1,7 +1,5 @@
 """CAA against the paper's numbers and against all integer partitions."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import pytest

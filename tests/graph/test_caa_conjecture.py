@@ -1,7 +1,5 @@
 """Why the attack that minimises the largest group is the worst at four paper budgets and never at the fifth."""
 
-from __future__ import annotations
-
 from itertools import combinations_with_replacement
 
 import pytest

@@ -1,7 +1,5 @@
 """Groups and links of a communication graph against networkx, of few robots and of hundreds."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Few cuts of large sparse networks are tried one by one."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Groups that an attack may leave, as their list in C has them, against the definition."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx as nx

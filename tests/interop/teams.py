@@ -1,7 +1,5 @@
 """Random teams of Stone Soup's platforms, sensors and tracks, in the plane and in space."""
 
-from __future__ import annotations
-
 import datetime
 from dataclasses import dataclass
 from typing import Any

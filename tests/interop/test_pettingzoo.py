@@ -1,7 +1,5 @@
 """A mission as a game: the API's own test, and the same mission as ``run_mission`` flies."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Without the extra an import says which is missing; the core never imports Stone Soup; the plug-in is found."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """The whole loop: manager, attacker, a tracker for each group; order, determinism, certificates, networks, faults."""
 
-from __future__ import annotations
-
 import datetime
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Plans against brute force over Stone Soup's own configurations; other managers on the same reward."""
 
-from __future__ import annotations
-
 import copy
 from importlib import import_module
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Values of a step's problem, against Stone Soup's own updater fed with predicted measurements."""
 
-from __future__ import annotations
-
 import copy
 from itertools import islice
 from typing import Any

@@ -1,17 +1,13 @@
 """The steps of the main job as tests know them; what the job answers is asked of ``bound`` or the command."""
 
-from __future__ import annotations
+from collections.abc import Callable
+from typing import Any
 
-from typing import TYPE_CHECKING, Any
+import pytest
 
 from ratt_opt.main_job import bound
 from ratt_opt.report import write
 from ratt_opt.solvers import ratt
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import pytest
 
 __all__ = ["SEARCHES", "step"]
 

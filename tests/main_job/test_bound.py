@@ -1,7 +1,5 @@
 """The main job as one call: every claim of its report against the definitions."""
 
-from __future__ import annotations
-
 import signal
 from dataclasses import replace
 

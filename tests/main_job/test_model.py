@@ -1,10 +1,8 @@
 """Bounds of a mission's first step, units by state, outputs in model-free files, remarks on silent elements."""
 
-from __future__ import annotations
-
 import csv
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +10,6 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.missions.first_step import first_step
 from ratt_opt.report.description import named
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 QUICK = {"guarantees": "none", "time_limit": 20}
 

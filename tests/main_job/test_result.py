@@ -1,7 +1,5 @@
 """A bound report as a value: plain data, pickled, copied, compared, shown."""
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

@@ -1,7 +1,5 @@
 """What a report leaves behind: files, plain data, a figure, a notebook's view; and what reads them again."""
 
-from __future__ import annotations
-
 import csv
 import json
 

@@ -3,8 +3,6 @@
 It shares no code with the library: range, bearing, their derivatives and the second-order term are written out again.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 

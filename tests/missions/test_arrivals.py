@@ -1,7 +1,5 @@
 """Late measurements, uncertain poses, robots lost, targets that come and go, attacks seen: against a NumPy filter."""
 
-from __future__ import annotations
-
 import json
 from time import monotonic, sleep
 

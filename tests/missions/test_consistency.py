@@ -1,7 +1,5 @@
 """Consistency of the filter's covariance over one step of the paper's largest case, for each linearisation."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Several steps ahead: the joint criterion is the Kalman filter run step by step; dropped sequences cost nothing."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product

@@ -1,7 +1,5 @@
 """Groups that split and meet believe what a central filter does, and nothing is counted twice."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What a mission writes: tables that say what happened, figures, an animation and a player that open."""
 
-from __future__ import annotations
-
 import csv
 import importlib.util
 import json

@@ -1,7 +1,5 @@
 """A sensor class of one's own counts for what it states: in plans, filters, simulations, files and journals."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,9 +1,7 @@
 """Parameters of missions and of sensors' estimates: passed down, read from TOML, refused by name."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,9 +10,6 @@ import ratt_opt as ro
 from ratt_opt import FitParams, MissionModel, MissionParams
 from ratt_opt.cli import run
 from tests.extremes import at_extremes, places
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 REFUSED = {"linearisations", "sequences", "most_periods", "noise_floor", "on_time"}
 

@@ -1,7 +1,5 @@
 """Missions: the textbook filter, the same to the bit, resumed after a kill, every attack model, bad arguments."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The builds that the page of the compiled loops names, and one without warnings, make a library with all functions."""
 
-from __future__ import annotations
-
 import ctypes
 import re
 import runpy

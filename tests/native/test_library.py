@@ -1,7 +1,5 @@
 """Where arrays are in memory, and which ones C may read."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

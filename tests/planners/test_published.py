@@ -1,7 +1,5 @@
 """Published planners against their papers' own words: algorithms line by line, guarantees, examples."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import combinations, product
 

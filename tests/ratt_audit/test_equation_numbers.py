@@ -1,7 +1,5 @@
 """Lines of the ledger carry the numbers that the paper prints."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from ratt_audit.appendix.printed import equation_number, numbered, printed_lines

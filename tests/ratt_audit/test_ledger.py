@@ -1,7 +1,5 @@
 """The ledger: every label, verdicts that are computed, files that others can read."""
 
-from __future__ import annotations
-
 import json
 import re
 from fractions import Fraction

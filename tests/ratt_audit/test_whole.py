@@ -1,9 +1,7 @@
 """Whole instances: the three steps that fail, replayed from their definitions; requirements against all attacks."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterator
 from itertools import combinations, product
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -12,15 +10,11 @@ from ratt_audit.appendix.patterns import pattern1_chains, submodular_chains
 from ratt_audit.appendix.roles import Side
 from ratt_audit.engine.decide import Verdict, decide
 from ratt_audit.whole.recorded import rechecked, recorded_lines
+from ratt_audit.whole.replay import WholeInstance
 from ratt_audit.whole.search import WholeSearch, decide_team, ordered_teams, smallest_instance
 from ratt_audit.whole.teams import whole_teams
 from ratt_audit.whole_lines import whole_instance
 from ratt_opt import InputError, ProofError, TableFunction, find_monotonicity_violation, find_submodularity_violation
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from ratt_audit.whole.replay import WholeInstance
 
 CHAINS = {chain.name: chain for chain in (*pattern1_chains(), *submodular_chains())}
 

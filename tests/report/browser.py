@@ -1,7 +1,5 @@
 """A real browser for the tests of pages; they are skipped, saying why, where there is none."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil

@@ -3,8 +3,6 @@
 Source of the matrices (linear RGB, full severity): Machado, Oliveira and Fernandes, IEEE TVCG 15(6), 2009, Table 1.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.colors import to_rgb
 

@@ -1,20 +1,14 @@
 """Names that are formulas in a spreadsheet stay text."""
 
-from __future__ import annotations
-
 import csv
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ratt_opt import InformationInput, bound
 from ratt_opt.report.csv_file import write_csv
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pytest
 
 
 def read(path: Path) -> list[list[str]]:

@@ -1,7 +1,5 @@
 """Ellipses of maps: the share of points inside, and the axes of the definition."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,9 +1,7 @@
 """Every table as LaTeX: whole rows, escaped names, and commands that print nothing else."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -11,9 +9,6 @@ import ratt_opt as ro
 from ratt_opt.cli import run
 from ratt_opt.report.latex import latex_of, latex_table
 from ratt_opt.report.tables import report_tables
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def tabulars(text: str) -> list[list[list[str]]]:

@@ -1,17 +1,16 @@
 """What users name is drawn letter by letter, and a figure that cannot be drawn costs nothing else."""
 
-from __future__ import annotations
-
 import json
 import re
 import warnings
 from io import BytesIO
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
 import ratt_opt as ro
 from ratt_opt.cli import run
@@ -19,11 +18,6 @@ from ratt_opt.report.lettering import Lettering, choose_fonts, literal
 from ratt_opt.report.notebook import report_view
 from ratt_opt.studies import Case, Study
 from ratt_opt.studies import run as run_study
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from matplotlib.figure import Figure
 
 NAMES = ("$5", "$$", "Ba$$in", "$5 or $6", "$x_{$", r"$\frac$", r"\textbf{a}", "100% & _#^~", r"a\$b", "$a_b$")
 NAMES += (

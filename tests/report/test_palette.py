@@ -1,7 +1,5 @@
 """Colours of one figure stay apart for everyone, and what they say is said again by shape."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import pytest

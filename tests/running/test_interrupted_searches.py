@@ -1,7 +1,5 @@
 """One rule for all searches: interrupted at any moment, each returns its bracket and says so."""
 
-from __future__ import annotations
-
 import signal
 import threading
 import time

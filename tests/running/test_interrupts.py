@@ -1,7 +1,5 @@
 """What an interrupt must not leave half done."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

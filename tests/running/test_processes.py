@@ -1,7 +1,5 @@
 """Worker processes: whatever they were at when they ended, those who started them end too."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import time

@@ -1,7 +1,5 @@
 """Progress: on a terminal, every step over two seconds, with its time; nowhere else, and nothing stays."""
 
-from __future__ import annotations
-
 import fcntl
 import os
 import pty

@@ -1,7 +1,5 @@
 """Numbers of drawn scenarios are arguments: speeds, areas and network shapes, checked by name."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,10 +1,8 @@
 """Lists of edges: each genuine one is read as it is, and what is another format is refused."""
 
-from __future__ import annotations
-
 import re
+from collections.abc import Callable
 from io import BytesIO
-from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
@@ -14,9 +12,6 @@ from scipy.sparse import coo_matrix
 
 from ratt_opt import FileFormatError
 from ratt_opt.scenario.edge_list import parse_edge_list
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 TRIANGLE = "1 2\n2 3\n3 1"
 IMPURE = {

@@ -1,7 +1,5 @@
 """Scenario files: round trips, the schema, and every refusal in one line."""
 
-from __future__ import annotations
-
 import json
 import tempfile
 from pathlib import Path

@@ -1,18 +1,14 @@
 """Matrices given in many ways are the same input; entries at fault are named; payloads stay with their elements."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from ratt_opt import FileFormatError, InformationInput, InputError, load_input, ratt, save_scenario
 from tests.strategies import information_data
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def parts(seed: int = 0) -> dict[str, Any]:

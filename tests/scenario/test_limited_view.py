@@ -1,7 +1,5 @@
 """Teams with limited views, checked against what defines them: geometry, controls, files, refusals."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

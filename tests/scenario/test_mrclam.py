@@ -1,7 +1,5 @@
 """Reading the MRCLAM text format: a tiny synthetic set always, the real data where it is present."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

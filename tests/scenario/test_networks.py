@@ -1,7 +1,5 @@
 """Five families of networks, checked against what defines them."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

@@ -1,9 +1,7 @@
 """Scenarios on the graphs of other programs' files."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import networkx as nx
 import numpy as np
@@ -13,9 +11,6 @@ from ratt_opt import FileFormatError, InputError, graph_scenario, load_scenario
 from ratt_opt.cli import run
 from ratt_opt.scenario.graph_files import GRAPH_FILES, read_graph
 from tests.cli.refusal import refused
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 WRITERS = {
     ".graphml": nx.write_graphml,

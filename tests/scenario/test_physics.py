@@ -1,7 +1,5 @@
 """The physical model against finite differences, the EKF in Joseph form, and its symmetries."""
 
-from __future__ import annotations
-
 import math
 import pickle
 

@@ -1,7 +1,5 @@
 """Numbers that can hardly be meant are remarked on, in the report and in JSON; others are not."""
 
-from __future__ import annotations
-
 import pytest
 
 import ratt_opt as ro

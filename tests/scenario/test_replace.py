@@ -1,15 +1,11 @@
 """Every field of every input record can be changed, and what results is checked like a file."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from ratt_opt import InformationInput, InputError, Robot, Scenario, Sensor, random_scenario
-
-if TYPE_CHECKING:
-    from ratt_opt.scenario.record import Record
+from ratt_opt.scenario.record import Record
 
 SCENARIO = random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0)
 INFORMATION = InformationInput(

@@ -1,12 +1,11 @@
 """One sensor class everywhere: scenarios, missions, trackers, files; by registration and by entry points."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from pathlib import Path
+from typing import ClassVar
 
 import jsonschema
 import numpy as np
@@ -14,9 +13,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.scenario.sensors import kinds
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SONAR = """
 from dataclasses import dataclass

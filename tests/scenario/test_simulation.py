@@ -1,7 +1,5 @@
 """Simulated tracking: the filter's covariance is the plan's, and its errors are as large as it says."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

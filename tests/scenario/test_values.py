@@ -1,9 +1,8 @@
 """The values that input accepts are those that work; the others are refused by the field's name."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,9 +11,6 @@ import ratt_opt as ro
 from ratt_opt import InputError
 from ratt_opt.cli import run
 from ratt_opt.scenario import files, problem_record
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SCENARIO = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0)
 OBJECTIVES = ["trace", "logdet", "maxeig"]

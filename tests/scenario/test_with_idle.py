@@ -1,7 +1,5 @@
 """Information files in which few robots may choose."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

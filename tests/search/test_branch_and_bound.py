@@ -1,7 +1,5 @@
 """The loop against all solutions: least sums of one number of each list, with limits and interrupts at any moment."""
 
-from __future__ import annotations
-
 from itertools import product
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Open nodes against a plain list: order, bounds, and interrupts at any moment."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

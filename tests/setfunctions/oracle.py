@@ -1,7 +1,5 @@
 """Properties and curvatures straight from their definitions, O(4**n); share nothing with the library."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

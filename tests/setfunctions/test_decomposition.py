@@ -1,7 +1,5 @@
 """Parts of set functions against their definition: values, marginals and modular bounds over all sets."""
 
-from __future__ import annotations
-
 import pickle
 from fractions import Fraction
 from itertools import product

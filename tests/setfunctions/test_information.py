@@ -1,7 +1,5 @@
 """The three criteria against their definitions in plain matrix algebra."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Checks of properties against their definitions over all pairs of sets."""
 
-from __future__ import annotations
-
 import time
 from contextlib import suppress
 

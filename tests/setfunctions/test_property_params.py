@@ -1,7 +1,5 @@
 """Whatever sets are looked at, a witness is one, and nothing is called proved that is false."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

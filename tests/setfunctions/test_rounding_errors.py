@@ -1,7 +1,5 @@
 """What computing an inverse may have rounded, and how far rounding leaves matrices from semidefinite."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ratt_opt.setfunctions.rounding_errors import inverse_error, is_definite, negative_parts, shrunk_to_semidefinite

@@ -1,7 +1,5 @@
 """Every family of the zoo against the definitions over all pairs of sets."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Any set function, known by its values alone: brackets hold against brute force, values are counted and checked."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

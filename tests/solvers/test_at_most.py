@@ -1,7 +1,5 @@
 """At most so many robots choose an element that is not their idle one: planners against all plans."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise, product

@@ -1,7 +1,5 @@
 """The exhaustive optimum against the definition: every plan, every sensing subset, every link subset."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Refined plans: never worse than RATT's, with a true bracket, and mostly the best where teams are small."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Equal and dominated elements are no loss: values, optima and attacks stay as they were."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

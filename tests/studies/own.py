@@ -1,7 +1,5 @@
 """A study with functions of its own, for tests of the engine; worker processes import it by name."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import ratt_opt as ro

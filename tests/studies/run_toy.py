@@ -1,7 +1,5 @@
 """``python -m tests.studies.run_toy --out DIR``: the toy study from the command line."""
 
-from __future__ import annotations
-
 import sys
 
 from ratt_opt.studies.command import Entry, main

@@ -1,17 +1,12 @@
 """What is made of all studies, when some of them are run again."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
+
+import pytest
 
 from ratt_opt.studies import Case, Entry, Study, main
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pytest
 
 ONE = Study(
     name="one",

@@ -1,12 +1,11 @@
 """The same sweep on a real Dask scheduler: the same bytes, also when a worker is killed in the middle."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -17,10 +16,6 @@ from ratt_opt.studies.progress import Progress
 from tests.cluster import SLOW, scheduler, wait_for, workers
 from tests.documents import ROOT
 from tests.studies.toy import STUDY
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 
 @pytest.fixture(autouse=True)

@@ -1,7 +1,5 @@
 """The engine: same rows whoever ran them, resumed where they stopped, refused where they do not belong."""
 
-from __future__ import annotations
-
 import json
 import os
 import random
@@ -9,11 +7,11 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -27,9 +25,6 @@ from ratt_opt.studies.progress import Progress
 from ratt_opt.studies.store import open_journal, read_table
 from ratt_opt.studies.study import run_trial
 from tests.studies.toy import STUDY
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[2]
 

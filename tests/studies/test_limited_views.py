@@ -1,11 +1,9 @@
 """The study of limited views, small: what it counts against definitions, and that its page says what its rows say."""
 
-from __future__ import annotations
-
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from itertools import groupby
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,9 +18,6 @@ from ratt_opt.studies.engine import run
 from ratt_opt.studies.progress import Progress
 from ratt_opt.studies.statistics import column, estimate, select
 from ratt_opt.studies.store import read_table
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @pytest.mark.parametrize("seed", range(3))

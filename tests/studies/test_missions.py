@@ -1,21 +1,15 @@
 """The studies of missions, small: what must hold whatever the random numbers."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import ratt_opt as ro
 from ratt_opt.studies import MISSION_METRICS, Case, Seeds, Study, SweepError, mission_study, run
+from ratt_opt.studies.cases import Cell
 from tests.afternoon import nearest
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ratt_opt.studies.cases import Cell
-
 
 TEAM = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0)
 

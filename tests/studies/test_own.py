@@ -1,7 +1,5 @@
 """Studies by others: planners, attackers, problems and measures given as functions."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The paper's studies, small: what every table must satisfy whatever the random numbers."""
 
-from __future__ import annotations
-
 import csv
 import math
 import os

@@ -1,15 +1,11 @@
 """Progress: a bar with the time left on a terminal, plain lines when piped."""
 
-from __future__ import annotations
-
 import io
-from typing import TYPE_CHECKING
+
+import pytest
 
 from ratt_opt.studies import progress
 from ratt_opt.studies.progress import Progress
-
-if TYPE_CHECKING:
-    import pytest
 
 
 class _Terminal(io.StringIO):

@@ -1,7 +1,5 @@
 """Quantities of a trial: brackets of the optimum, guarantees that hold, and one exact attack for each plan."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,13 +1,11 @@
 """What a study is made of afterwards: means, intervals, data frame, LaTeX, figure; and studies in one call."""
 
-from __future__ import annotations
-
 import csv
 import subprocess
 import sys
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,9 +15,6 @@ import ratt_opt as ro
 from ratt_opt.studies import Case, Seeds, Study, SweepError, run
 from ratt_opt.studies.plots import comparison
 from tests.studies.own import STUDY, boldest, first_robot
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 CASES = tuple(Case(n_robots=3, n_targets=2, alpha_s=s, alpha_c=0) for s in (0, 1))
 

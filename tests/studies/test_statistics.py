@@ -1,7 +1,5 @@
 """Intervals and verdicts."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A study whose trials cost nothing, for tests of the engine; workers import it by name."""
 
-from __future__ import annotations
-
 import os
 import time
 

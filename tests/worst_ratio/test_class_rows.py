@@ -1,7 +1,5 @@
 """Linear rows of the non-decreasing class: what single elements are bounded by before any other row is found."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from ratt_opt.worst_ratio.class_rows import NonDecreasing

@@ -1,7 +1,5 @@
 """Families of instances on which RATT is as bad as its bounds allow, by replay through the library."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

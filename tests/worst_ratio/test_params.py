@@ -1,7 +1,5 @@
 """Parameters of worst-case ratios: brackets hold whatever they are; what no search could go on with is refused."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

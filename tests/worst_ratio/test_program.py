@@ -1,7 +1,5 @@
 """Bounds of a linear program: right multipliers prove them, wrong ones prove nothing."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

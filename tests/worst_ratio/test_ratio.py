@@ -1,7 +1,5 @@
 """Worst-case ratios: known values, brute random search from above, exact replay, broken witnesses."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Rational linear systems: solved exactly, or refused."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

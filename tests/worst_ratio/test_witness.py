@@ -1,7 +1,5 @@
 """Families of instances: the limit family against the exact worst-case ratio, both by replay."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """Elimination of one robot after the other, against every cut and against all partitions."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import networkx as nx

@@ -1,7 +1,5 @@
 """The least weight of links to cut, against all partitions of small networks, and what the search is made of."""
 
-from __future__ import annotations
-
 import json
 from fractions import Fraction
 from functools import cache, partial

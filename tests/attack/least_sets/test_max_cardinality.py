@@ -1,7 +1,5 @@
 """Which robots of a group can sense below a threshold: answers and limits against all sets of small teams."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Sets of one size below a threshold, against all sets: found once each, listed, bounded, with costs, in pieces."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from time import process_time
 

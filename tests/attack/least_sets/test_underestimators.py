@@ -1,7 +1,5 @@
 """The underestimator's parts: outer polytopes hold every set, and the ascent reaches the linear program's optimum."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

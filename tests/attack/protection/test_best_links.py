@@ -1,7 +1,5 @@
 """The best links to protect and to add, against the definition: every choice of k links, every attack on the team."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 from itertools import combinations

@@ -1,7 +1,5 @@
 """Robots to protect against all sets of k, and budgets asked in metres."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """Annealed attacks on set functions known by their values keep the budgets, and find what greedy steps do not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

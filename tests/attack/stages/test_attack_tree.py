@@ -1,7 +1,5 @@
 """Attacks by branch and bound on functions known by their values: against the definition, in pieces, on large teams."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

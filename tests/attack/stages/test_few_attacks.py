@@ -1,7 +1,5 @@
 """Few cuts on large sparse networks: every attack is tried, and equals the definition."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx as nx

@@ -1,7 +1,5 @@
 """A contributor adds a stage with one file and one line: the page "Your first stage", done in a temporary module."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The schedule of attacks: brackets stay true whichever stages are left out, and what ran is told as it was."""
 
-from __future__ import annotations
-
 import pickle
 
 import networkx as nx

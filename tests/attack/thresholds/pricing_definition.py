@@ -1,7 +1,5 @@
 """Groups, what they need and what they cost at prices, by the definition."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx as nx

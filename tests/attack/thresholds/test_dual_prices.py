@@ -1,7 +1,5 @@
 """The exact attacker of larger teams on any graph, run on teams small enough for the definition or a table."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

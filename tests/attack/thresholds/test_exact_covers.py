@@ -1,7 +1,5 @@
 """Exact covers by few columns, against all choices of columns; of teams of one word of robots, and of two."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import numpy as np

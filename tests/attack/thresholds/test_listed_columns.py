@@ -1,7 +1,5 @@
 """Thresholds by all groups that an attack may leave, on teams small enough for the definition or a table."""
 
-from __future__ import annotations
-
 import networkx as nx
 import pytest
 

@@ -1,7 +1,5 @@
 """Tree inequalities weighted by what robots are worth: never above the worst case, on any graph."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

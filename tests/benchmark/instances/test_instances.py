@@ -1,7 +1,5 @@
 """Instances: what is written is read back, classes follow from problems, faults are named."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Records: true ones are accepted, each field that is changed for the better is refused, by name."""
 
-from __future__ import annotations
-
 import copy
 import itertools
 

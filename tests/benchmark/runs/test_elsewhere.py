@@ -1,7 +1,5 @@
 """Solvers from other places: an installed package, processes of a cluster, a library behind an address."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

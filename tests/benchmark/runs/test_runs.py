@@ -1,7 +1,5 @@
 """Runs over a library: measures against their definitions, solvers of the library, resuming, the page."""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """Wrong attackers and cutters, and a sweep of broken output on each track: named, and worth only what holds."""
 
-from __future__ import annotations
-
 import json
 import random
 import shlex

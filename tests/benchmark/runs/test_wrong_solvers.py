@@ -1,7 +1,5 @@
 """Wrong solvers are named, cost only their own row, and leave nothing running."""
 
-from __future__ import annotations
-
 import json
 import os
 import shlex

@@ -1,7 +1,5 @@
 """Bad certificates: one clear line that names the first fault."""
 
-from __future__ import annotations
-
 import copy
 import json
 

@@ -4,8 +4,6 @@ A case is drawn with branches; it holds for the groups, with who is blinded in e
 what the verifier accepts at its leaf, the definition must say the same of each of these groups.
 """
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx as nx

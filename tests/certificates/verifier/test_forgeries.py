@@ -4,8 +4,6 @@ The forger knows the verifier and asks it about every leaf. Of claims that are f
 true it succeeds often enough to show that it is no straw man.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Upper ends by covers and by gains, of robots that see few targets: what gains claim, and each fault by its name."""
 
-from __future__ import annotations
-
 import copy
 import json
 from itertools import product

@@ -4,8 +4,6 @@ Truth is decided without the verifier: the mutated problem is rebuilt, its optim
 and the plan's worst case by trying every raw attack.
 """
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

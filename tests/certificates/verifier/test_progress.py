@@ -1,9 +1,9 @@
 """Writing and checking a certificate say how far they are."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
+
+import pytest
 
 from ratt_opt import VerifierLimits, random_scenario
 from ratt_opt.certificates.verifier import work
@@ -11,11 +11,6 @@ from ratt_opt.certificates.verifier.limits import within
 from ratt_opt.cli import run
 from ratt_opt.running.progress import Step
 from tests.certificates.cases import certified
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    import pytest
 
 
 def test_every_part_of_the_work_counts_its_cases(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """Short files that ask the verifier for much: it ends in time, without recursion, with a documented error."""
 
-from __future__ import annotations
-
 import json
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """Lemmas about single targets against every set; rows and spaced values against every plan; forgeries are refused."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,19 +1,15 @@
 """The verifier ends on every file: files that ask for too much are neither proved nor refuted, in bounded time."""
 
-from __future__ import annotations
-
 import json
+from pathlib import Path
 from time import monotonic, process_time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from ratt_opt import FileFormatError, InputError, ProofError, VerifierLimits, verify_certificate
 from ratt_opt.certificates.verifier.verify import verify_document
 from ratt_opt.errors import UndecidedError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def _document(d: int, exponent: int, tree: list[Any], upper: float = 1.0) -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """What sets of robots are worth, against the criteria themselves: never more, and no less."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from flint import fmpq

@@ -1,7 +1,5 @@
 """The max-eigenvalue criterion in the plane: every bound against every context, and the search to its end."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import combinations, pairwise, product
 

@@ -1,7 +1,5 @@
 """Annealed cuts are attacks, and leave groups no larger than cheapest cuts do; moves are those of the definition."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Tree inequalities never claim a larger group than some attack leaves, and annealed cuts keep within the budget."""
 
-from __future__ import annotations
-
 from itertools import combinations
 
 import networkx as nx

@@ -1,7 +1,5 @@
 """A bag is written with rosbags, replayed by the command, and its beliefs are those of a tracker fed by hand."""
 
-from __future__ import annotations
-
 import csv
 import json
 

@@ -1,7 +1,5 @@
 """Bags for tests, written with rosbags: poses of ada and bob, detections by ada in her frame, by bob in the map."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """``player.html`` in a real browser: it loads without a fault, steps, plays, and shows the mission's numbers."""
 
-from __future__ import annotations
-
 import re
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Bad packets and outliers: what is skipped and why, and beliefs against a NumPy filter with a gate of its own."""
 
-from __future__ import annotations
-
 import json
 import logging
 

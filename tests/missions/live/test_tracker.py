@@ -1,7 +1,5 @@
 """The loop inside a real system: pure state, deadlines, clocks, bad input."""
 
-from __future__ import annotations
-
 import json
 import pickle
 import re

@@ -1,18 +1,14 @@
 """The live view: what is handed to Rerun, by a stand-in of its interface; where it is installed, a whole file."""
 
-from __future__ import annotations
-
 import sys
+from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
 import ratt_opt as ro
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 TEAM = ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0, communication_range=200.0)
 

@@ -1,7 +1,5 @@
 """Motions and sensors: derivatives against differences, motions against many small steps, noise against samples."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,7 +1,5 @@
 """Doppler, heights, sideways flight, covariances of whole states, noise per second: against NumPy written out again."""
 
-from __future__ import annotations
-
 import inspect
 import json
 

@@ -1,7 +1,5 @@
 """Real data: the noise law comes back from drawn errors; the dataset replayed under attack."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path

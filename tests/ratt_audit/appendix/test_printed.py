@@ -1,7 +1,5 @@
 """The printed lines: one for each numbered line that the ledger decides, typeset, and letter for letter the paper's."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from xml.etree import ElementTree

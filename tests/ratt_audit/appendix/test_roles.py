@@ -1,7 +1,5 @@
 """The premises of the roles hold for what RATT really chooses."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What the ledger proves, measured on random instances: plan, attack and optimum by the library itself."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Claims on three elements of three robots, shared by the tests of the engine."""
 
-from __future__ import annotations
-
 from ratt_audit.engine.claim import Claim, Ground, Inequality, Linear
 from ratt_opt.worst_ratio.function_class import FunctionClass
 

@@ -1,7 +1,5 @@
 """The elementary inequalities of a class against its definition."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The checker of counterexamples can say no: each field corrupted, the fault named."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

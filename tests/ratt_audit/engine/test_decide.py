@@ -1,7 +1,5 @@
 """Claims with known answers: proved, refuted, or settled on the grid only."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Polynomials in one minus the curvature against evaluation."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from hypothesis import given

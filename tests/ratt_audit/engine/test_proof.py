@@ -1,7 +1,5 @@
 """The checker of proofs can say no: each part corrupted, the fault named."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

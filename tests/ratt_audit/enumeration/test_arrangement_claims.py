@@ -1,7 +1,5 @@
 """Sizes, patterns and smallest teams: against direct counts, and verdicts that can change."""
 
-from __future__ import annotations
-
 import pytest
 
 from ratt_audit.appendix.readings import SETTINGS

@@ -1,7 +1,5 @@
 """Theorem 2: counts against the definition, lazy evaluation against plain greedy, fits of known laws."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

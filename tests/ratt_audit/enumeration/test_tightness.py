@@ -1,7 +1,5 @@
 """Which bounds are attained: verdicts that follow from instances and proofs."""
 
-from __future__ import annotations
-
 from ratt_audit.engine.decide import Verdict
 from ratt_audit.enumeration.tightness import tightness_entries
 

@@ -1,7 +1,5 @@
 """Claims on EKF objectives: casting against RATT itself, exact replay, verdicts known by proof."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from fractions import Fraction

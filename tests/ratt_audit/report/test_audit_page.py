@@ -1,11 +1,10 @@
 """The page on the audit: numbers from the ledger and the library, and no page from half a ledger."""
 
-from __future__ import annotations
-
 import json
 import re
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,9 +13,6 @@ from analysis.audit_page import main, page, ratio_table, realistic_table, record
 from ratt_audit.whole.recorded import recorded_lines
 from ratt_opt import theorem1_bound
 from tests.documents import ROOT
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def refuted(label: str, **found: Any) -> dict[str, Any]:

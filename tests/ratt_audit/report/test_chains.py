@@ -1,7 +1,5 @@
 """The pages show the lines that their entries speak of, and their columns keep words whole."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

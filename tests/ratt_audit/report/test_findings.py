@@ -1,7 +1,5 @@
 """The summary says what the records say: counts by hand on a small ledger, and no dangling references."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

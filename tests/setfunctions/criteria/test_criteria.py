@@ -1,7 +1,5 @@
 """What every criterion states of itself, and a fourth one, defined here, that states nothing but its formula."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 

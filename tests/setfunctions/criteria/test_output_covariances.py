@@ -1,7 +1,5 @@
 """Covariances of outputs in C against the definition, in parts and in one, and what C may not read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

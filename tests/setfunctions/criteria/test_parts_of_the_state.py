@@ -1,7 +1,5 @@
 """The trace and the worst axis of a part of the state: values, attacks, max-min, curvature and certificates."""
 
-from __future__ import annotations
-
 import copy
 import json
 import pickle

@@ -1,7 +1,5 @@
 """Functions known by their values, few robots busy: brackets without enumeration against all plans."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

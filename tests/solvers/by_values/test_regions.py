@@ -1,7 +1,5 @@
 """Sums of best elements whose robots may be exchanged: mean losses, blinded regions and their tree, by definition."""
 
-from __future__ import annotations
-
 from itertools import combinations, combinations_with_replacement
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Upper ends by rows of parts, against brute force; plans by values, against greedy ones and their exchanges."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

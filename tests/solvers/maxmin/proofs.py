@@ -1,7 +1,5 @@
 """Proofs of best plans, read by definition."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

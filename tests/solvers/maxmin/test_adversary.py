@@ -1,7 +1,5 @@
 """What is known of a plan from quick attacks, and from known outcomes by exchanges: no plan is lost by it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Divisions that no leaf below relies on are taken back; what is left proves as much, wherever the search stops."""
 
-from __future__ import annotations
-
 import pytest
 
 from ratt_opt import Problem, exhaustive_optimum, random_scenario, solve_maxmin

@@ -1,7 +1,5 @@
 """What a robot's mixture costs in the tight cuts, against its definition, and divisions of elements."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Proofs that a group stays low."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

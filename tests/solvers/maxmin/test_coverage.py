@@ -1,7 +1,5 @@
 """Coverage and facility location as a trace: values of all sets, and both ends against the exhaustive optimum."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,12 +1,11 @@
 """A contributor adds a bound with one file and one line: the page "Your first bound", done in a temporary module."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,9 +14,6 @@ import ratt_opt as ro
 from ratt_opt.solvers.maxmin.stages import schedule
 from tests.documents import ROOT
 from tests.strategies import random_problem
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 PAGE = ROOT / "docs" / "contributors" / "first_bound.md"
 

@@ -1,9 +1,7 @@
 """Attacks with exchanged smaller groups: allowed, of the same sizes, and not stronger at their strongest."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterable
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -13,9 +11,6 @@ from ratt_opt.budget import Budget
 from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
 from tests.oracles import groups_left
 from tests.strategies import OBJECTIVES, random_elements
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
 
 
 def groups_of(problem: Problem, attack: Attack) -> list[frozenset[int]]:

@@ -1,7 +1,5 @@
 """The search on teams of which attacks leave one pair and lone robots, against all plans."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,8 +1,6 @@
 """Best plans by marginal gains: against every plan and attack, where robots see few targets."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import networkx as nx
 import numpy as np
@@ -25,9 +23,6 @@ from tests.solvers.maxmin.engine import MARGINALS_ALONE, by_marginals, marginals
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import sparse_problem
 from tests.ways import go
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 CASES = 60
 

@@ -1,7 +1,5 @@
 """What no plan can exceed by monotonicity is a bound, and its proof is one; a search that found nothing has it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,9 +1,8 @@
 """Parameters of the search for best plans: passed down, read from TOML, refused if a search could not go on."""
 
-from __future__ import annotations
-
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,9 +15,6 @@ from ratt_opt.solvers.maxmin.params import AT_LEAST_ONE
 from tests.extremes import places, value_at, with_one
 from tests.solvers.maxmin.engine import NO_PLANS_LISTED
 from tests.ways import go
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @cache

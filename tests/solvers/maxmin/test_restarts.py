@@ -1,7 +1,5 @@
 """Restarted searches lose no plan, prove what they say, and leave a valid bracket wherever they stop."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Plans that are looked for on the way have shares of the time: with a thousand robots one step takes half a second."""
 
-from __future__ import annotations
-
 import pytest
 
 from ratt_opt import MaxMinParams, Problem, random_scenario, ratt, solve_maxmin, worst_case_attack

@@ -1,7 +1,5 @@
 """Outcomes of small groups narrow a search without losing a plan, and prove what they leave out."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

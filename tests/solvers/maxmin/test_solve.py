@@ -1,18 +1,17 @@
 """The max-min solver against the exhaustive optimum, and its proofs against an independent reading."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 import time
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
 from ratt_opt import (
+    AttackResult,
     InputError,
     LogDetObjective,
     Problem,
@@ -32,9 +31,6 @@ from tests.solvers.maxmin.engine import BLIND, UNLISTED, exact_attacks, link_att
 from tests.solvers.maxmin.proofs import proved_upper
 from tests.strategies import OBJECTIVES, random_problem
 from tests.ways import go
-
-if TYPE_CHECKING:
-    from ratt_opt import AttackResult
 
 
 @pytest.mark.parametrize("seed", range(200))

@@ -1,7 +1,5 @@
 """Values that coverage teams can have, against all plans and attacks of small teams."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

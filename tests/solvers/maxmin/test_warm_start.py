@@ -1,7 +1,5 @@
 """Searches that start from an earlier plan or result: the same claims as without, in less work."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -1,16 +1,16 @@
 """The compiled parts of the searches in depth: their definitions, empty tables, and what C may not read."""
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from itertools import product
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
 from ratt_opt import InputError, MaxMinParams
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
+from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.maxmin import marginal_tables
 from ratt_opt.solvers.maxmin.covers.choices import CoverChoices
 from ratt_opt.solvers.maxmin.covers.dive import CoverSums, Dive, Sums
@@ -20,11 +20,6 @@ from ratt_opt.solvers.maxmin.elements import PackedElements
 from ratt_opt.solvers.maxmin.levels import Outcome
 from ratt_opt.solvers.maxmin.marginal_search import dive
 from ratt_opt.solvers.maxmin.params import CoverSearchParams, SeparationParams
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ratt_opt.setfunctions.information import InformationObjective
 
 CASES = [(kind, dimension, seed) for kind in ("trace", "logdet") for dimension in (1, 2, 3, 5) for seed in range(8)]
 

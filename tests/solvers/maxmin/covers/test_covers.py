@@ -1,9 +1,7 @@
 """Best plans by covers: against every plan and attack, where robots see few targets."""
 
-from __future__ import annotations
-
 from itertools import product
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,16 +16,11 @@ from ratt_opt import (
 from ratt_opt.solvers.maxmin.covers.pool import cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
 from ratt_opt.solvers.maxmin.elements import Elements
+from ratt_opt.solvers.maxmin.proof import Cover
 from tests.oracles import brute_force_worst_case
 from tests.solvers.maxmin.engine import COVERS_ALONE, NO_PLANS_LISTED, covers
 from tests.strategies import sparse_problem
-from tests.ways import go
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ratt_opt.solvers.maxmin.proof import Cover
-    from tests.ways import Way
+from tests.ways import Way, go
 
 CASES = 40
 

@@ -1,8 +1,6 @@
 """Two thousand tiny teams, with rows and hulls from the root: ends and certificates against every plan and attack."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import networkx as nx
 import numpy as np
@@ -14,9 +12,6 @@ from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.solve import solve_in_coordinates
 from ratt_opt.solvers.maxmin.stages.schedule import TREES_ALONE
 from tests.solvers.maxmin.proofs import proved_upper
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 pytestmark = pytest.mark.slow
 

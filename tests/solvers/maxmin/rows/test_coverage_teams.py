@@ -1,8 +1,6 @@
 """Teams whose robots cover few targets each: both ends against the exhaustive optimum, and proofs with lemmas."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +13,6 @@ from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 from ratt_opt.solvers.maxmin.solve import solve_in_coordinates
 from ratt_opt.solvers.maxmin.stages.schedule import TREES_ALONE
 from tests.solvers.maxmin.proofs import proved_upper
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def covering_team(rng: np.random.Generator, *, robots: int, paths: int, targets: int, lost: int, kind: str) -> Problem:

@@ -1,7 +1,5 @@
 """Inequalities of hulls against every set of a target's elements, and against the concave envelope itself."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

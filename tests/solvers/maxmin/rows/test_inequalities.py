@@ -1,7 +1,5 @@
 """Inequalities of single targets against every set of the elements that touch one, and rows against groups."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

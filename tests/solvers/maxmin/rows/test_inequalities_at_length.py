@@ -1,21 +1,15 @@
 """A hundred thousand inequalities of single targets against every set of up to twelve elements that touch one."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
 from ratt_opt import Coverage, FacilityLocation, Part, SumFunction
+from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.rows.base_sets import base_set_inequalities, first_of_each_class, semidefinite
 from ratt_opt.solvers.maxmin.rows.hulls import hulls_of
 from ratt_opt.solvers.maxmin.rows.inequalities import tangents
 from tests.solvers.maxmin.rows.test_inequalities import drawn_task
-
-if TYPE_CHECKING:
-    from ratt_opt.solvers.maxmin.elements import Task
 
 pytestmark = pytest.mark.slow
 
