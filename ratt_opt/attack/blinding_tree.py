@@ -34,8 +34,6 @@ __all__ = ["BlindingTree"]
 
 ROUNDING = 64 * np.finfo(np.float64).eps
 """Relative error by which a quotient may be too large."""
-TOLERANCE = 1e-9
-"""Share of what a part may be worth by which gains have to exceed its level to be added."""
 
 
 class _Node(NamedTuple):
@@ -145,10 +143,11 @@ class BlindingTree(AttackNodes[_Node, "tuple[_Node, float, FloatArray]"]):
         order: IntArray = np.argsort(-share, kind="stable")
         new: list[FloatArray] = []
         parts: list[int] = []
+        tolerance = 1e-9  # of what a part may be worth: rows that exceed a level by less are the solver's rounding
         self._orders.append(order)
         for j, part in enumerate(self._parts):
             gains = part.gains(order)
-            if float(gains @ share) > level[j] + TOLERANCE * part.most:
+            if float(gains @ share) > level[j] + tolerance * part.most:
                 new.append(gains)
                 parts.append(j)
         if new:

@@ -82,8 +82,8 @@ def _bound_by_weakest(task: AttackTask, team: Team, size: int, budget: Budget) -
     for found in search.run(budget):
         if found is not None:
             search.threshold = min(search.threshold, team.value(found))
-        bracket.raise_lower(min(search.lower, search.threshold * (1 - 1e-12)))
-    bracket.raise_lower(search.threshold * (1 - 1e-12))
+        bracket.raise_lower(min(search.lower, search.threshold * (1 - ROUNDING)))
+    bracket.raise_lower(search.threshold * (1 - ROUNDING))
 
 
 def _offer_cut(task: AttackTask, single: FloatArray) -> None:

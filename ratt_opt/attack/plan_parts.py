@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PlanPart", "parts_of_plan", "refuse_larger_gain"]
 
-MOST_LISTED = 10
-"""Robots of a part whose sets are all valued at once: kilobytes."""
-
 
 class PlanPart:
     """One part of the value of a plan's sets of robots.
@@ -50,7 +47,7 @@ class PlanPart:
 
     def _values(self, sets: BoolArray) -> FloatArray:
         k = len(self.robots)
-        if k > MOST_LISTED:
+        if k > 10:  # all sets of ten robots are valued at once, and kept: some kilobytes
             return self._evaluate(sets)
         if self._table is None:
             self._table = self._evaluate((np.arange(2**k)[:, None] >> np.arange(k) & 1).astype(np.bool_))

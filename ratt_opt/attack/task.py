@@ -42,9 +42,6 @@ __all__ = [
     "widened_result",
 ]
 
-LARGEST_CHUNK = 4096
-"""Sets evaluated at once: a table of 2**20 sets as one batch would take gigabytes of matrices."""
-
 
 class PlanValues(SetFunction):
     """``phi`` of the elements that a set of robots has in one plan; counts what it was asked.
@@ -67,9 +64,9 @@ class PlanValues(SetFunction):
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the sets of robots in the rows of ``membership`` (K, N)."""
         self.evaluations += len(membership)
-        values = np.empty(len(membership))
-        for start in range(0, len(membership), LARGEST_CHUNK):
-            rows = membership[start : start + LARGEST_CHUNK]
+        values, chunk = np.empty(len(membership)), 4096  # a table of 2**20 sets in one would take gigabytes of matrices
+        for start in range(0, len(membership), chunk):
+            rows = membership[start : start + chunk]
             selected = np.zeros((len(rows), self.objective.n), dtype=np.bool_)
             selected[:, self.plan] = rows
             values[start : start + len(rows)] = self.objective.evaluate(selected)

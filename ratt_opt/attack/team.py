@@ -28,12 +28,8 @@ if TYPE_CHECKING:
     from ratt_opt.graph.threat import Threat
     from ratt_opt.setfunctions.base import SetFunction
 
-__all__ = ["LARGEST_DIMENSION", "MOST_ROBOTS", "WORK", "Links", "Team", "has_native_kernel", "work_of_value"]
+__all__ = ["LARGEST_DIMENSION", "WORK", "Links", "Team", "has_native_kernel", "work_of_value"]
 
-MOST_ROBOTS = 32
-"""Largest team whose subsets fit 32-bit masks; a team may have more robots."""
-MOST_TABULATED = 16
-"""Largest team whose subsets are all valued in one call."""
 EXCHANGES = PaceParams(first=2**12, most=2**26)
 """Pairs of robots that exchanges try in one call."""
 PARTIAL_SETS = PaceParams(first=2**3)
@@ -41,8 +37,6 @@ PARTIAL_SETS = PaceParams(first=2**3)
 long as a trace of two."""
 LARGEST_DIMENSION = 64
 """Largest dimension of states in the compiled code."""
-PLANE = 2
-"""Dimension of states for which criteria are in closed form."""
 
 
 def has_native_kernel(objective: SetFunction) -> TypeGuard[InformationObjective]:
@@ -71,7 +65,7 @@ WORK = WorkParams()
 def work_of_value(objective: InformationObjective) -> int:
     """Estimate the multiplications for one value of a set of robots."""
     d = objective.dimension
-    by_rotations = d > PLANE and objective.compiled_code == MaxEigenvalueObjective.native_kernel
+    by_rotations = d > 2 and objective.compiled_code == MaxEigenvalueObjective.native_kernel
     return objective.n_targets * d**3 * (WORK.rotations if by_rotations else 1)
 
 
@@ -132,7 +126,7 @@ class Team:
     @property
     def is_planar(self) -> bool:
         """Tell whether targets have states of two dimensions, for which there are sharper bounds."""
-        return self.objective.dimension == PLANE
+        return self.objective.dimension == 2
 
     @property
     def is_by_axis(self) -> bool:
@@ -171,8 +165,8 @@ class Team:
         ------
         InputError : there are more than 16 robots.
         """
-        if self.robots > MOST_TABULATED:
-            raise InputError("information", f"must be of at most {MOST_TABULATED} robots", self.robots)
+        if self.robots > 16:  # of more, one call would take too long to be interrupted
+            raise InputError("information", "must be of at most 16 robots", self.robots)
         values, sums = np.empty(2**self.robots), np.empty((self.robots + 1, *self.prior.shape))
         loops.all_values(self.record, address(values), address(sums))
         return values
@@ -202,11 +196,7 @@ class Links(NamedTuple):
         return _links_of(threat)
 
 
-KEPT_LINKS = 8
-"""Threats whose arcs are kept, some megabytes each for a thousand robots."""
-
-
-@lru_cache(maxsize=KEPT_LINKS)
+@lru_cache(maxsize=8)  # some megabytes for a thousand robots
 def _links_of(threat: Threat) -> Links:
     n_robots = threat.graph.n_robots
     tails, heads = np.divmod(_arcs(threat.graph), n_robots)

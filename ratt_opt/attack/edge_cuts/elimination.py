@@ -35,11 +35,12 @@ __all__ = ["Elimination", "EliminationParams", "TooManyStates"]
 Classes = tuple[int, ...]
 """Masks of the nodes of a bag that kept links join, ascending."""
 Table = dict[Classes, "IntArray"]
-"""(k, 2 + classes) states by their classes: weight cut, number, sizes of eliminated nodes; by ascending weight."""
+"""(k, 2 + classes) states by their classes: weight cut, number, sizes of eliminated nodes; by ascending weight.
+
+Joined states are numbered from 1 on; 0 is a state in which no link was decided, ``-1 - k`` one that cuts link ``k``.
+"""
 Side = tuple["IntArray", list[int]]
 """States, and the places of their classes among joined ones."""
-NOTHING = -1
-"""The number of a state in which no link was decided."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,12 +176,12 @@ class _States:
     @staticmethod
     def nothing(classes: int) -> IntArray:
         """(1, 2 + classes) the state of a part without links."""
-        return np.array([[0, NOTHING, *[0] * classes]], dtype=np.int64)
+        return np.zeros((1, 2 + classes), dtype=np.int64)
 
     def of_link(self, link: int, i: int, j: int) -> Table:
-        """A link kept, or cut: its number is below that of nothing."""
+        """A link kept, or cut."""
         apart = self.nothing(2)
-        apart[0, :2] = self._network.weight[link], NOTHING - 1 - link
+        apart[0, :2] = self._network.weight[link], -1 - link
         return {(1 << i | 1 << j,): self.nothing(1), (1 << i, 1 << j): apart}
 
     def join(self, one: Table, other: Table) -> Table:
@@ -209,10 +210,10 @@ class _States:
         found, open_ = [], [number]
         while open_:
             state = open_.pop()
-            if state > NOTHING:
-                open_ += joined[state].tolist()
-            elif state < NOTHING:
-                found.append(NOTHING - 1 - state)
+            if state > 0:
+                open_ += joined[state - 1].tolist()
+            elif state < 0:
+                found.append(-1 - state)
         return found
 
     def _add(self, fronts: dict[Classes, _Front], classes: Classes, one: Side, other: Side) -> None:
@@ -234,7 +235,7 @@ class _States:
             rows = front.states[: front.count]
             rows = rows[np.argsort(rows[:, 0], kind="stable")]
             self._joined.append(rows[:, 1:3].copy())
-            numbers = self._count + np.arange(len(rows))
+            numbers = self._count + 1 + np.arange(len(rows))
             self._count += len(rows)
             if len(rows):
                 table[classes] = np.ascontiguousarray(np.column_stack([rows[:, 0], numbers, rows[:, 3:]]))

@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CutNetwork", "exact_integers"]
 
-MOST_BITS, FINEST, COARSEST = 60, 20, 4
-"""Bits of the largest number that pricing computes; bits of a weight's smallest step, at most and at least."""
-
 
 def exact_integers(argument: str, values: Sequence[object], *, positive: bool = False) -> tuple[list[int], int]:
     """Numbers as integers and what they were multiplied by: 0.1 is a tenth, as it is written.
@@ -89,7 +86,7 @@ class CutNetwork:
             if a != b and weight:
                 between[a, b] = between.get((a, b), 0) + weight
         size = [sum(own[robot] for robot in group) for group in members]
-        if (sum(given) * sum(own)).bit_length() > MOST_BITS - COARSEST:
+        if (sum(given) * sum(own)).bit_length() > 56:  # the steps of prices take four bits more, at least
             raise InputError("weights", "and sizes must have fewer digits: their sums' product is at most 2^56", "more")
         network = cls(
             graph=graph,
@@ -118,9 +115,9 @@ class CutNetwork:
 
     @cached_property
     def unit(self) -> int:
-        """Steps of prices that make one step of a weight, so that no sum in pricing overflows."""
+        """Steps of prices that make one step of a weight: a millionth, or as few as keep pricing within 60 bits."""
         used = (max(self.total, 1) * int(self.size.sum())).bit_length()
-        return 1 << max(COARSEST, min(FINEST, MOST_BITS - used))
+        return 1 << min(20, 60 - used)
 
     @cached_property
     def arcs(self) -> tuple[IntArray, IntArray]:

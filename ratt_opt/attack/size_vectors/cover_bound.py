@@ -35,9 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CoverBound", "SetClasses", "cover_bound"]
 
-MARGIN = 1e-9
-"""Room, relative to the threshold, beyond what is proved: against rounding in the costs."""
-
 
 PART = 12
 """Robots of a table of sums."""
@@ -113,8 +110,8 @@ class CoverBound:
         return np.maximum(self._theta - self.potentials, 0.0)
 
     def room(self, threshold: float) -> float:
-        """Return the largest cost of the sets and robots of a family below the threshold."""
-        return threshold - self.bound + MARGIN * abs(threshold)
+        """Return the largest cost of the sets and robots of a family below the threshold, up to rounding in costs."""
+        return threshold - self.bound + 1e-9 * abs(threshold)
 
     def columns(self, threshold: float) -> SetColumns:
         """The sets that a family with all groups below the threshold may use, with their costs."""

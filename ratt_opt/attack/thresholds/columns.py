@@ -26,8 +26,6 @@ __all__ = ["UNIT", "Column", "Columns", "IntegerDuals"]
 
 UNIT = 1 << 20
 """Unit of integer duals: one link. Reduced costs are exact with them."""
-PART = 12
-"""Robots of a table of sums of duals."""
 
 
 class IntegerDuals:
@@ -41,10 +39,10 @@ class IntegerDuals:
 
     @cached_property
     def _sums(self) -> IntArray:
-        parts = -(-len(self.robots) // PART)
-        padded = np.zeros((parts, PART), np.int64)
+        part = 12  # robots of a table of sums, as in native/src/groups.h
+        padded = np.zeros((-(-len(self.robots) // part), part), np.int64)
         padded.flat[: len(self.robots)] = self.robots
-        return np.ascontiguousarray([sums_of_subsets(part) for part in padded])
+        return np.ascontiguousarray([sums_of_subsets(duals) for duals in padded])
 
     @property
     def record(self) -> DualsRecord:

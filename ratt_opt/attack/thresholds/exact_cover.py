@@ -20,7 +20,6 @@ __all__ = ["ExactCover", "packed"]
 
 STEPS = 2_000_000
 """Columns looked at between two looks at the clock: some milliseconds."""
-WORD = 64
 
 
 class CoverVerdict(IntEnum):
@@ -34,7 +33,7 @@ class CoverVerdict(IntEnum):
 def packed(groups: BoolArray) -> NDArray[np.uint64]:
     """(K, W) the groups (K, N) as masks of W words, robot ``i`` bit ``i % 64`` of word ``i // 64``."""
     count, robots = groups.shape
-    wide = np.zeros((count, -(-robots // WORD) * WORD), np.uint8)
+    wide = np.zeros((count, -(-robots // 64) * 64), np.uint8)
     wide[:, :robots] = groups
     return np.packbits(wide, axis=1, bitorder="little").view("<u8").astype(np.uint64)
 
@@ -47,7 +46,7 @@ class ExactCover:
     """
 
     def __init__(self, robots: int, groups: NDArray[np.uint64], costs: IntArray, most: tuple[int, int, int]) -> None:
-        count, words = len(groups), -(-robots // WORD)
+        count, words = groups.shape
         self._levels, self._left = np.zeros(robots + 2, LevelRecord), np.zeros((robots + 2, words), np.uint64)
         self._levels[0] = most, 0, count, 0, -1, -1
         self._left[0] = packed(np.ones((1, robots), dtype=np.bool_))

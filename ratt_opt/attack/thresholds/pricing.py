@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.params import DEFAULT
-from ratt_opt.attack.team import KEPT_LINKS, WORK, Links, Team
+from ratt_opt.attack.team import WORK, Links, Team
 from ratt_opt.attack.thresholds.columns import UNIT
 from ratt_opt.native.library import Answered, address, address_of
 from ratt_opt.native.loops import PricingRecord, loops
@@ -247,7 +247,7 @@ class GroupSearch:
         return rows.value, code == Answered.FINISHED
 
 
-@lru_cache(maxsize=KEPT_LINKS)
+@lru_cache(maxsize=8)
 def _least_cuts(threat: Threat) -> IntArray:
     """(N + 1,) links that leave a group of that many robots, at least; kept, as every exact attack asks.
 

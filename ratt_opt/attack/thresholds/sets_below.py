@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ratt_opt.attack.team import MOST_ROBOTS, Team
+from ratt_opt.attack.team import Team
 from ratt_opt.errors import InputError
 from ratt_opt.native.library import address, checked
 from ratt_opt.native.loops import loops
@@ -23,10 +23,8 @@ if TYPE_CHECKING:
 
 __all__ = ["SetsBelow"]
 
-BLOCKS, VALUES = 16, 1 << 18
-"""Blocks of 2**12 sets of a team, and values of a table, that are looked at between two looks at the clock."""
 BLOCK = 12
-"""Robots whose sets make a block."""
+"""Robots whose sets make a block, as in native/src/thresholds.c."""
 
 
 class SetsBelow:
@@ -43,7 +41,7 @@ class SetsBelow:
         source: Team | FloatArray,
         protected: Iterable[int] = (),
         groups: NDArray[np.uint32] | None = None,
-        n_blinded: int = MOST_ROBOTS,
+        n_blinded: int | None = None,
     ) -> None:
         self.source, self._protected = source, frozenset(protected)
         if isinstance(source, Team):
@@ -51,11 +49,11 @@ class SetsBelow:
         else:
             self.robots = len(source).bit_length() - 1
             checked("values", source, np.float64, (2**self.robots,))
-        if not self.robots <= MOST_ROBOTS:
-            raise InputError("values", f"must be of at most {MOST_ROBOTS} robots", self.robots)
+        if not self.robots <= 32:  # bits of a mask
+            raise InputError("values", "must be of at most 32 robots", self.robots)
         self.sizes = np.empty(2**self.robots, np.uint8)
         self._outside, self._inside = _fewest_blinded(self.robots, groups)
-        self._n_blinded = n_blinded
+        self._n_blinded = self.robots if n_blinded is None else n_blinded
 
     def mark(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
         """Set ``sizes``; the least value met that is not below, and its set: infinite and ``None`` if all are below.
@@ -77,21 +75,21 @@ class SetsBelow:
         value, following = c_double(inf), c_int64(-1)
         kept = address(self.sizes), byref(value), byref(following)
         matters = address(self._outside), address(self._inside), self._n_blinded
-        blocks = len(self._outside)
-        for first in range(0, blocks, BLOCKS):
+        blocks, at_once = len(self._outside), 16  # some milliseconds between two looks at the clock
+        for first in range(0, blocks, at_once):
             budget.check()
-            last = min(first + BLOCKS, blocks)
+            last = min(first + at_once, blocks)
             if loops.mark_below(self.source.record, threshold, first, last, *matters, *kept):
                 raise MemoryError
         return value.value, None if following.value < 0 else following.value
 
     def _mark_values(self, values: FloatArray, threshold: float, budget: Budget) -> tuple[float, int | None]:
-        least, following = inf, None
-        for first in range(0, len(values), VALUES):
+        least, following, at_once = inf, None, 1 << 18  # some milliseconds between two looks at the clock
+        for first in range(0, len(values), at_once):
             budget.check()
-            some = values[first : first + VALUES]
+            some = values[first : first + at_once]
             is_below, masks = some < threshold, np.arange(first, first + len(some), dtype=np.uint32)
-            self.sizes[first : first + VALUES] = np.where(is_below, np.bitwise_count(masks) + np.uint8(1), np.uint8(0))
+            self.sizes[first : first + at_once] = np.where(is_below, np.bitwise_count(masks) + np.uint8(1), np.uint8(0))
             others = np.where(is_below, inf, some)
             k = int(others.argmin())
             if others[k] < least:
