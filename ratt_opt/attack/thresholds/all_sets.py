@@ -15,8 +15,7 @@ import numpy as np
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.attack.params import DEFAULT
 from ratt_opt.attack.team import Links, Team, has_native_kernel, work_of_value
-from ratt_opt.attack.thresholds.columns import UNIT, Columns
-from ratt_opt.attack.thresholds.master import best_duals
+from ratt_opt.attack.thresholds.columns import UNIT, Columns, best_duals
 from ratt_opt.attack.thresholds.sets_below import SetsBelow
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.communication import robots_of

@@ -1,6 +1,6 @@
 """Decision of a threshold for an attack on any network: dual prices, pricing, and exact covers.
 
-1. A linear program over known groups suggests dual prices of robots and of blinded ones (``master.py``).
+1. A linear program over known groups suggests dual prices of robots and of blinded ones (``columns.py``).
 2. If they claim more links than the budget, they refute the threshold once no group has a negative reduced cost
    (``pricing.py``). They are taken in proportion, so that they claim little more. Groups that have one are added to the
    program.
@@ -13,26 +13,106 @@ Source: for the last step, Baldacci, Christofides and Mingozzi, Mathematical Pro
 from __future__ import annotations
 
 from ctypes import c_uint64
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attack.annealing import Partition
+from ratt_opt.attack.thresholds.columns import UNIT, dual_program, reduced_cost_rows
 from ratt_opt.attack.thresholds.exact_cover import ExactCover, packed
-from ratt_opt.attack.thresholds.master import GroupPrices, KnownGroup
-from ratt_opt.attack.thresholds.pricing import UNIT, GroupSearch, Question
+from ratt_opt.attack.thresholds.pricing import DualPrices, GroupSearch, Question
 from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
 
 if TYPE_CHECKING:
-    from ratt_opt.attack.thresholds.pricing import DualPrices, PricedGroup, PricingProblem
-    from ratt_opt.budget import Budget
+    from collections.abc import Iterable
 
-__all__ = ["ThresholdDecision"]
+    from ratt_opt._validation import BoolArray, FloatArray
+    from ratt_opt.attack.params.groups import MasterParams
+    from ratt_opt.attack.thresholds.pricing import PricedGroup, PricingProblem
+    from ratt_opt.budget import Budget
+    from ratt_opt.graph.threat import Threat
+    from ratt_opt.highs import LinearProgram
+
+__all__ = ["GroupPrices", "KnownGroup", "ThresholdDecision"]
 
 
 HALF = 2 * UNIT
 """Dual prices are about half links: each link that is cut leaves two groups."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownGroup:
+    """``robots`` (N,) with ``need`` of them blinded; asked for at thresholds above ``value`` only."""
+
+    robots: BoolArray
+    need: int
+    value: float
+
+
+class GroupPrices:
+    """The linear program over known groups of one threat; groups may be added and the threshold changed at any time.
+
+    Prices are of half links: if every group below the threshold has ``pi(g) <= cut(g) / 2 + mu need(g)``, an attack
+    that leaves only such groups cuts at least ``sum of pi - mu alpha_s`` links.
+    """
+
+    def __init__(self, threat: Threat, params: MasterParams) -> None:
+        self._threat, self._robots, self._params = threat, threat.graph.n_robots, params
+        self._adjacent = np.zeros((self._robots, self._robots), dtype=np.int64)
+        for i, j in threat.graph.links:
+            self._adjacent[i, j] = self._adjacent[j, i] = 1
+        self._groups: dict[tuple[bytes, int], KnownGroup] = {}
+        self._program: LinearProgram | None = None
+        self._threshold = -np.inf
+
+    def add(self, groups: Iterable[KnownGroup]) -> int:
+        """Add groups; returns how many are new."""
+        fresh = []
+        for group in groups:
+            key = (group.robots.tobytes(), group.need)
+            if key not in self._groups or self._groups[key].value > group.value:
+                self._groups[key] = group
+                fresh.append(group)
+        if self._program is not None:
+            self._enter(self._program, fresh)
+        return len(fresh)
+
+    def solve(self, threshold: float, seconds: float = np.inf) -> DualPrices:
+        """Best prices at which no known group of this threshold has a negative reduced cost.
+
+        After that many seconds, prices of nothing.
+        """
+        if self._program is None or threshold != self._threshold:
+            most = 2.0 * len(self._threat.graph.links) + 2.0
+            self._threshold, self._program = threshold, dual_program(self._robots, self._threat.n_blinded, most)
+            self._enter(self._program, self._groups.values())
+        claim, n = self._program.solve(seconds).x, self._robots
+        if len(claim) != n + 1:
+            return DualPrices(robot=np.zeros(n), blinded=0.0, links=0.0)
+        robot, blinded = claim[:n], max(float(claim[n]), 0.0)
+        if self._program.n_rows > self._params.most_rows:
+            self._forget(robot, blinded)
+        return DualPrices(robot=robot, blinded=blinded, links=float(robot.sum()) - blinded * self._threat.n_blinded)
+
+    def half_cuts(self, groups: BoolArray) -> FloatArray:
+        """(C,) half the links that separate the robots of each row of ``groups`` (C, N) from the others."""
+        return np.asarray(0.5 * ((groups @ self._adjacent) * ~groups).sum(axis=1))
+
+    def _enter(self, program: LinearProgram, groups: Iterable[KnownGroup]) -> None:
+        below = [group for group in groups if group.value < self._threshold]
+        if below:
+            cuts = self.half_cuts(np.array([group.robots for group in below]))
+            needs = [(np.flatnonzero(group.robots).tolist(), group.need) for group in below]
+            program.add_rows(reduced_cost_rows(needs, cuts, self._robots))
+
+    def _forget(self, robot: FloatArray, blinded: float) -> None:
+        """Keep the groups whose reduced cost is among the least, and start afresh next time."""
+        keys, groups = list(self._groups), list(self._groups.values())
+        robots, need = np.array([group.robots for group in groups]), np.array([group.need for group in groups])
+        costs = self.half_cuts(robots) + blinded * need - robots @ robot
+        self._groups = {keys[k]: groups[k] for k in np.argsort(costs, kind="stable")[: self._params.most_rows // 2]}
+        self._program = None
 
 
 class ThresholdDecision:

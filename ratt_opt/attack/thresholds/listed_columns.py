@@ -2,7 +2,7 @@
 
 A limit is a set of robots, and the most of these that can sense below the threshold
 (``least_sets/max_cardinality.py``): it says how many robots must be blinded in a column. At first there are limits for
-the strongest robots, any number of them. A linear program over all columns gives duals (``master.py``). Columns of its
+the strongest robots, any number of them. A linear program over all columns gives duals (``columns.py``). Columns of its
 solution in which more robots must be blinded than the limits say get limits of their own, which hold for all columns
 that overlap them; and the program is solved again. At last columns of small reduced cost are few, and exact covers by
 them are searched.
@@ -18,8 +18,7 @@ import numpy as np
 
 from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.least_sets.max_cardinality import MaxCardinalityBelow
-from ratt_opt.attack.thresholds.columns import UNIT, Column, Columns, IntegerDuals
-from ratt_opt.attack.thresholds.master import best_duals
+from ratt_opt.attack.thresholds.columns import UNIT, Column, Columns, IntegerDuals, best_duals
 from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.graph.communication import mask_of, robots_of

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ratt_opt.attack.params import MasterParams
-from ratt_opt.attack.thresholds.master import GroupPrices, KnownGroup
+from ratt_opt.attack.thresholds.dual_prices import GroupPrices, KnownGroup
 from tests.strategies import team_problem
 
 

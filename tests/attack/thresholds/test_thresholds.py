@@ -11,9 +11,8 @@ from ratt_opt.attack.params import MasterParams
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.thresholds import exact_cover, sets_below
 from ratt_opt.attack.thresholds.all_sets import decide
-from ratt_opt.attack.thresholds.columns import UNIT, Columns
+from ratt_opt.attack.thresholds.columns import UNIT, Columns, best_duals
 from ratt_opt.attack.thresholds.exact_cover import ExactCover
-from ratt_opt.attack.thresholds.master import best_duals
 from ratt_opt.attack.thresholds.sets_below import SetsBelow
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph import group_list
