@@ -33,6 +33,7 @@ class SetsBelow:
     ``source`` : a :class:`Team`, whose sets are worth no less than those inside them, or (2**N,) the values of all sets
     ``protected`` : robots that cannot be blinded, and so are in every set inside
     ``groups`` : bit masks; only sets matter that blinding at most ``n_blinded`` robots leaves of one of them
+    ``at_once`` : values of a table between two looks at the clock, some milliseconds
     ``sizes`` : (2**N,) these sizes, plus one; 0 for none, or if it does not matter
     """
 
@@ -42,6 +43,7 @@ class SetsBelow:
         protected: Iterable[int] = (),
         groups: NDArray[np.uint32] | None = None,
         n_blinded: int | None = None,
+        at_once: int = 1 << 18,
     ) -> None:
         self.source, self._protected = source, frozenset(protected)
         if isinstance(source, Team):
@@ -53,6 +55,7 @@ class SetsBelow:
             raise InputError("values", "must be of at most 32 robots", self.robots)
         self.sizes = np.empty(2**self.robots, np.uint8)
         self._outside, self._inside = _fewest_blinded(self.robots, groups)
+        self._at_once = at_once
         self._n_blinded = self.robots if n_blinded is None else n_blinded
 
     def mark(self, threshold: float, budget: Budget) -> tuple[float, int | None]:
@@ -84,7 +87,7 @@ class SetsBelow:
         return value.value, None if following.value < 0 else following.value
 
     def _mark_values(self, values: FloatArray, threshold: float, budget: Budget) -> tuple[float, int | None]:
-        least, following, at_once = inf, None, 1 << 18  # some milliseconds between two looks at the clock
+        least, following, at_once = inf, None, self._at_once
         for first in range(0, len(values), at_once):
             budget.check()
             some = values[first : first + at_once]

@@ -9,7 +9,7 @@ import pytest
 import ratt_opt as ro
 from ratt_opt.attack.params import MasterParams
 from ratt_opt.attack.team import Team
-from ratt_opt.attack.thresholds import exact_cover, sets_below
+from ratt_opt.attack.thresholds import exact_cover
 from ratt_opt.attack.thresholds.all_sets import decide
 from ratt_opt.attack.thresholds.columns import UNIT, Columns, best_duals
 from ratt_opt.attack.thresholds.exact_cover import ExactCover
@@ -48,13 +48,14 @@ def asked(threat, below, threshold, **options):
 def test_any_values_against_the_plain_test(seed, monkeypatch):
     """Values in any order, so that nothing is inherited from set to set; everything in one piece and in many."""
     if seed % 2:
-        for module, name, few in ((sets_below, "VALUES", 8), (group_list, "STEPS", 3), (exact_cover, "STEPS", 2)):
-            monkeypatch.setattr(module, name, few)
+        for module, few in ((group_list, 3), (exact_cover, 2)):
+            monkeypatch.setattr(module, "STEPS", few)
     rng = np.random.default_rng(seed)
     n_robots = int(rng.integers(1, 9))
     threat = random_problem(rng, n_robots, kind="logdet", controls=1).threat
     values = rng.normal(size=2**n_robots)
-    plain, below = ThresholdTest(threat, values), SetsBelow(values, threat.protected_robots)
+    below = SetsBelow(values, threat.protected_robots, at_once=8 if seed % 2 else 1 << 18)
+    plain = ThresholdTest(threat, values)
     for threshold in np.quantile(values, [0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]):
         split = plain.split(float(np.nextafter(threshold, -np.inf)))
         answer = asked(threat, below, float(threshold))
