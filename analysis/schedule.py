@@ -6,7 +6,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from ratt_opt.attack.params import AttackParams
-from ratt_opt.attack.size_vectors.size_stages import SIZE_STAGES
+from ratt_opt.attack.size_vectors.size_vector_search import SIZE_STAGES
 from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
 from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES, PLAN_STAGES
 

@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack import params as parameters
-from ratt_opt.attack.attack_tree import AttackTree
 from ratt_opt.attack.heuristics import bounded_rational_attack
-from ratt_opt.attack.stages.attack_state import AttackState
+from ratt_opt.attack.stages.attack_state import AttackState, can_enumerate_subsets
+from ratt_opt.attack.stages.branch_and_bound import AttackTree
 from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
 from ratt_opt.attack.staging import go_on, recorded, run_stages
 from ratt_opt.attack.task import (
@@ -23,7 +23,6 @@ from ratt_opt.attack.task import (
     metered_problem,
     widened_result,
 )
-from ratt_opt.attack.thresholds.all_sets import can_enumerate_subsets
 from ratt_opt.budget import Budget, OutOfBudget, Stop, interruptible
 from ratt_opt.coordinates.preparation import prepared
 from ratt_opt.problem import Attack, check_problem

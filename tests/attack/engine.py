@@ -14,23 +14,23 @@ import numpy as np
 
 import ratt_opt as ro
 from ratt_opt import AttackParams
-from ratt_opt.attack import attack_tree, exact, survey
+from ratt_opt.attack import exact, survey
 from ratt_opt.attack import params as parameters
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.enumeration import enumerate_by_values
 from ratt_opt.attack.protection import best_links, criticality
-from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
-from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch, search_size_vectors
 from ratt_opt.attack.size_vectors.weak_families import GroupExchanges
+from ratt_opt.attack.stages.all_sets import AllSets
+from ratt_opt.attack.stages.annealed_values import annealed_attacks
+from ratt_opt.attack.stages.branch_and_bound import AttackTree
+from ratt_opt.attack.stages.every_attack import enumerate_by_values
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.task import AttackBracket, AttackMemory, AttackTask, PlanValues
 from ratt_opt.attack.team import Links, Team
-from ratt_opt.attack.thresholds import all_sets
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.listed_columns import ListedSearch
 from ratt_opt.attack.thresholds.pricing import PricingProblem
 from ratt_opt.attack.thresholds.threshold_search import ThresholdSearch
-from ratt_opt.attack.value_annealing import annealed_attacks
 from ratt_opt.budget import Budget, OutOfBudget
 from ratt_opt.graph.group_list import groups_of
 from ratt_opt.setfunctions.metered import Metered
@@ -103,11 +103,11 @@ def _annealed_then_priced(task: AttackTask) -> Stop:
 
 
 SEARCHES = {
-    "all sets": all_sets.AllSets,
+    "all sets": AllSets,
     "size vectors": lambda task: Sized(task, _packed(task)),
     "dual prices": _priced,
     "listed columns": _by_list,
-    "branch and bound": attack_tree.AttackTree,
+    "branch and bound": AttackTree,
     "annealed attacks and dual prices": lambda task: Once(task, _annealed_then_priced),
     "every attack": lambda task: Once(task, enumerate_by_values),
     "annealed values": lambda task: Once(task, annealed_attacks),

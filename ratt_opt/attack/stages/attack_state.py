@@ -6,8 +6,7 @@ from functools import cached_property
 from math import isinf
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.team import Team
-from ratt_opt.attack.thresholds.all_sets import can_enumerate_subsets
+from ratt_opt.attack.team import Team, has_native_kernel, work_of_value
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.pricing import PricingProblem
 from ratt_opt.attack.thresholds.threshold_search import ThresholdSearch
@@ -17,7 +16,16 @@ if TYPE_CHECKING:
     from ratt_opt.attack.thresholds.listed_columns import ListedSearch
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["AttackState"]
+__all__ = ["AttackState", "can_enumerate_subsets"]
+
+
+def can_enumerate_subsets(task: AttackTask) -> bool:
+    """Tell whether all subsets of the team can be enumerated, by the compiled code or by their values."""
+    n_robots, f, params = task.problem.n_robots, task.problem.objective, task.params.all_sets
+    if not has_native_kernel(f):
+        return n_robots <= params.valued and 2**n_robots <= task.budget.evaluations_left
+    is_soon = work_of_value(f) * 2.0**n_robots <= params.most_work
+    return n_robots <= params.valued or (is_soon and n_robots <= params.enumerated)
 
 
 class AttackState:

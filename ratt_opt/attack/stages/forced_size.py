@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.attack.bounds import bound_by_trees, forced_group_bound
-from ratt_opt.attack.size_vectors.possible_sizes import possible_sizes_bound
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
 
@@ -16,7 +15,6 @@ __all__ = [
     "ForcedSizeOfOwnCriterionStage",
     "ForcedSizeOnDenseGraphsStage",
     "ForcedSizeStage",
-    "PossibleSizesStage",
     "TreeInequalitiesStage",
 ]
 
@@ -74,22 +72,3 @@ class ForcedSizeOnDenseGraphsStage(ForcedSizeStage):
     def share(self, params: AttackParams) -> Share:
         """Return a small part."""
         return Share(part=params.stages.first_bound, max_nodes=params.stages.first_bound_nodes)
-
-
-class PossibleSizesStage(Stage[AttackState]):
-    """Stage that bounds dense graphs by the sizes that groups can have together."""
-
-    name = "possible sizes"
-
-    def applies(self, attack: AttackState) -> bool:
-        """Dense graph, at most 100 robots, packed team, not brief."""
-        return attack.may_have_sizes
-
-    def share(self, params: AttackParams) -> Share:
-        """Return a part that leaves time for prices."""
-        return Share(part=params.stages.sizes)
-
-    def run(self, attack: AttackState) -> None:
-        """Groups of sizes that are possible on the graph; then the sets that one of them may be, one by one."""
-        assert attack.team is not None
-        attack.sure = possible_sizes_bound(attack.task, attack.team, attack.sure)

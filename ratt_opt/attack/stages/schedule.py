@@ -1,6 +1,6 @@
 """The schedules of attacks: stages in the order in which they run. A new stage is a file beside this one, and one line.
 
-Those of searches on complete graphs are in ``attack/size_vectors/size_stages.py``.
+Those of searches on complete graphs are in ``attack/size_vectors/size_vector_search.py``.
 """
 
 from __future__ import annotations
@@ -15,19 +15,18 @@ from ratt_opt.attack.stages.branch_and_bound import (
     BranchAndBoundOfOwnCriterionStage,
     BranchAndBoundStage,
 )
-from ratt_opt.attack.stages.counted_robots import CountedRobotsStage
 from ratt_opt.attack.stages.dual_prices import AnnealedAttacksStage, DualPricesStage
 from ratt_opt.attack.stages.every_attack import EveryAttackStage, EveryValuedAttackStage
 from ratt_opt.attack.stages.forced_size import (
     ForcedSizeOfOwnCriterionStage,
     ForcedSizeOnDenseGraphsStage,
     ForcedSizeStage,
-    PossibleSizesStage,
     TreeInequalitiesStage,
 )
 from ratt_opt.attack.stages.greedy_steps import GreedyStepsStage
 from ratt_opt.attack.stages.listed_columns import ListedColumnsAgainStage, ListedColumnsStage, ListedSizeStage
-from ratt_opt.attack.stages.single_robots import SingleRobotsStage, SingleValuesStage
+from ratt_opt.attack.stages.possible_sizes import PossibleSizesStage
+from ratt_opt.attack.stages.single_robots import CountedRobotsStage, SingleRobotsStage, SingleValuesStage
 from ratt_opt.attack.stages.size_vectors import SizeVectorsStage, SpatialSizeVectorsStage
 
 if TYPE_CHECKING:

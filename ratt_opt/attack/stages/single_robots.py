@@ -1,9 +1,10 @@
-"""Lower bound of attacks on a plan whose objective is any set function, known by its values alone.
+"""Stages: bounds by single robots, and by their number if all are alike.
 
-Some group keeps ``k`` unblinded robots (``forced_survivors``), so by monotonicity it is worth at least the k-th
-smallest individual value, and at least the strongest robot that cannot be blinded. Where theory proves the function
-submodular, every robot adds at least what it adds on top of all others of the plan; where the function states a bound
-``c`` on its total curvature, at least ``1 - c`` of its individual value. The ``k`` least of these add up to a bound.
+Some group keeps ``k`` unblinded robots (``forced_survivors``). By monotonicity it is worth at least the k-th smallest
+individual value, and at least the strongest robot that cannot be blinded. Of set functions that are known by their
+values alone, where theory proves the function submodular, every robot adds at least what it adds on top of all others
+of the plan; where the function states a bound ``c`` on its total curvature, at least ``1 - c`` of its individual value.
+The ``k`` least of these add up to a bound.
 """
 
 from __future__ import annotations
@@ -13,15 +14,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.attack.bounds import first_bound, forced_survivors, strongest_left
+from ratt_opt.attack.edge_cuts.smallest import largest_group_of
 from ratt_opt.attack.plan_parts import refuse_larger_gain
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Stage
+from ratt_opt.problem import Attack
 from ratt_opt.setfunctions.metered import unmetered
 
 if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask
 
-__all__ = ["SingleRobotsStage", "SingleValuesStage"]
+
+__all__ = ["CountedRobotsStage", "SingleRobotsStage", "SingleValuesStage"]
 
 
 class SingleRobotsStage(Stage[AttackState]):
@@ -78,3 +82,23 @@ def _refuse(task: AttackTask) -> None:
         own = plan[sorted(group)]
         for k, element in enumerate(own.tolist()):
             refuse_larger_gain(f, plan[plan != element], own[:k], element)
+
+
+class CountedRobotsStage(Stage[AttackState]):
+    """Stage for robots that are all alike."""
+
+    name = "smallest largest group"
+
+    def applies(self, attack: AttackState) -> bool:
+        """No robot to blind, all robots alike: a group is worth what their number says."""
+        return attack.threat.n_blinded == 0 and attack.task.problem.objective.are_alike(attack.task.values.plan)
+
+    def run(self, attack: AttackState) -> None:
+        """The smallest largest group, by prices of fewest cuts."""
+        task = attack.task
+        most = task.params.criterion.inner_nodes if attack.is_brief else None
+        with task.budget.stage(max_nodes=most) as part:
+            found = largest_group_of(attack.threat, part)
+            task.offer(Attack(links=found.cut))
+            fewest = np.arange(task.values.n) < found.lower
+            task.bracket.raise_lower(float(task.values.evaluate(fewest[None])[0]))

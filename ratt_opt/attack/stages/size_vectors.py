@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
-from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch, search_size_vectors
 from ratt_opt.attack.stages.attack_state import AttackState
 from ratt_opt.attack.staging import Share, Stage
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.attack.stages.listed_columns import ListedSize
 from ratt_opt.attack.staging import without_stages
-from ratt_opt.attack.thresholds.listed_size import ListedSize
 from ratt_opt.budget import Budget
 from ratt_opt.graph.group_list import groups_of
 from tests.brackets import worst_value

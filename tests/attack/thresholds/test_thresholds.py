@@ -8,9 +8,9 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attack.params import MasterParams
+from ratt_opt.attack.stages.all_sets import decide
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.thresholds import exact_cover
-from ratt_opt.attack.thresholds.all_sets import decide
 from ratt_opt.attack.thresholds.columns import UNIT, Columns, best_duals
 from ratt_opt.attack.thresholds.exact_cover import ExactCover
 from ratt_opt.attack.thresholds.sets_below import SetsBelow

@@ -1,4 +1,4 @@
-"""Lower bounds by size vectors where the graph is not complete, or has protected links.
+"""Stage: lower bounds by size vectors where the graph is not complete, or has protected links.
 
 - An attacker that may cut protected links too leaves no more.
 - Sizes alone say which size vectors are possible on a graph (``graph/possible_sizes.py``). Groups of such sizes, with
@@ -21,23 +21,44 @@ import numpy as np
 
 from ratt_opt.attack.size_vectors.disjoint_sets import MOST_ROBOTS
 from ratt_opt.attack.size_vectors.family_search import SetLists
-from ratt_opt.attack.size_vectors.size_stages import search_size_vectors
-from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
+from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch, search_size_vectors
+from ratt_opt.attack.stages.attack_state import AttackState
+from ratt_opt.attack.staging import Share, Stage
 from ratt_opt.attack.task import AttackBracket
 from ratt_opt.graph.link_scores import link_scores, scoring_group
 from ratt_opt.graph.possible_sizes import PossibleSizes
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.attack.team import Team
     from ratt_opt.graph.survivor_sizes import Sizes
     from ratt_opt.problem import Problem
 
-__all__ = ["possible_sizes_bound"]
+__all__ = ["PossibleSizesStage"]
 
 
 _SetValues = list[tuple[float, frozenset[int]]]
+
+
+class PossibleSizesStage(Stage[AttackState]):
+    """Stage that bounds dense graphs by the sizes that groups can have together."""
+
+    name = "possible sizes"
+
+    def applies(self, attack: AttackState) -> bool:
+        """Dense graph, at most 100 robots, packed team, not brief."""
+        return attack.may_have_sizes
+
+    def share(self, params: AttackParams) -> Share:
+        """Return a part that leaves time for prices."""
+        return Share(part=params.stages.sizes)
+
+    def run(self, attack: AttackState) -> None:
+        """Groups of sizes that are possible on the graph; then the sets that one of them may be, one by one."""
+        assert attack.team is not None
+        attack.sure = possible_sizes_bound(attack.task, attack.team, attack.sure)
 
 
 def possible_sizes_bound(task: AttackTask, team: Team, least: int) -> int:
