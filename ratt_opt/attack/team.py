@@ -109,7 +109,6 @@ class Team:
             relative=IMPROVEMENT.relative,
             rounding=objective.rounding,
         )
-        self.pace, self.set_pace = Pace(EXCHANGES), Pace(PARTIAL_SETS)
         loops.criteria_before(self.record, address(self._before))
 
     @classmethod
@@ -122,6 +121,16 @@ class Team:
     def among(self, robots: IntArray) -> Team:
         """Some of the robots, in this order."""
         return Team(self.objective, self.prior, np.ascontiguousarray(self.information[robots]), self.params)
+
+    @cached_property
+    def pace(self) -> Pace:
+        """Pace of exchanges."""
+        return Pace(EXCHANGES)
+
+    @cached_property
+    def set_pace(self) -> Pace:
+        """Pace of searches of sets."""
+        return Pace(PARTIAL_SETS)
 
     @property
     def is_planar(self) -> bool:

@@ -112,12 +112,12 @@ def sets_proof(
     places = address(members), address(rows), address(depth)
     params, looked, code = sets.params.trees, 0, PAUSED
     effort = params.criteria // sets.objective.n_targets
-    with GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody) as search:
-        while code == PAUSED and looked < params.most_criteria:
-            tick()
-            tell(COVERING, trees.record.count)
-            code = loops.grow_sets_tree(search.handle, trees.record, *places, size, effort)
-            looked += params.criteria
+    search = GroupSearch(plan, Question(sets.threshold, plan.robots, nobody, 0, 0), nobody)
+    while code == PAUSED and looked < params.most_criteria:
+        tick()
+        tell(COVERING, trees.record.count)
+        code = loops.grow_sets_tree(search.handle, trees.record, *places, size, effort)
+        looked += params.criteria
     if code != FINISHED:
         raise NotClosedError
     return {"size": size, "tree": trees.named(list(range(len(limits))))}
@@ -136,11 +136,11 @@ def group_tree(sets: PlanSets, question: Question, max_nodes: int, limits: Seque
     trees = _Trees(plan, question.limit, max_nodes, averages=averages, flows=flows, listed=params.listed, limits=limits)
     first = np.argsort(-question.duals, kind="stable").astype(np.int64)
     record, code = trees.record, PAUSED
-    with GroupSearch(plan, question, first) as search:
-        while code == PAUSED:
-            tick()
-            tell(COVERING, record.count)
-            code = loops.grow_group_tree(search.handle, record, params.cases)
+    search = GroupSearch(plan, question, first)
+    while code == PAUSED:
+        tick()
+        tell(COVERING, record.count)
+        code = loops.grow_group_tree(search.handle, record, params.cases)
     if code != FINISHED:
         raise NotClosedError
     masks = [sum(1 << int(i) for i in np.flatnonzero(row)) for row in trees.listed[: record.n_listed]]

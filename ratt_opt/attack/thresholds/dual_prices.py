@@ -233,8 +233,8 @@ class ThresholdDecision:
         gap = 2 * self.threat.alpha_c * UNIT - question.claim(self.threat.n_blinded)
         gap += self._params.rounded * self._plan.robots
         question = replace(question, limit=gap + 1)
-        with GroupSearch(self._plan, question) as search:
-            columns, is_complete = search.columns(nodes // self._params.listing, self._params.room, budget)
+        search = GroupSearch(self._plan, question)
+        columns, is_complete = search.columns(nodes // self._params.listing, self._params.room, budget)
         if not is_complete:
             return Answer(verdict=Threshold.OPEN)
         members = self._covered(sorted(columns, key=lambda column: column.cost), gap, budget)

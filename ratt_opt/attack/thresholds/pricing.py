@@ -74,13 +74,9 @@ class PricingProblem:
         ``effort`` : robots valued at most for each size
         """
         inside = np.ones(self.robots, dtype=np.bool_) if group is None else np.ascontiguousarray(group)
-        with self._asked(threshold, effort) as search:
-            return loops.most_below(search.handle, address(inside))
-
-    def _asked(self, threshold: float, effort: int | None = None) -> GroupSearch:
         nothing = np.zeros(self.robots, dtype=np.int64)
-        question = Question(threshold, self.robots, nothing, 0, 0, effort=effort)
-        return GroupSearch(self, question, nothing)
+        search = GroupSearch(self, Question(threshold, self.robots, nothing, 0, 0, effort=effort), nothing)
+        return loops.most_below(search.handle, address(inside))
 
     def annealed(
         self, question: Question, moves: int, warm: tuple[float, float], random: c_uint64
@@ -196,21 +192,11 @@ class GroupSearch:
             raise MemoryError
         self.nodes = 0
 
-    def __enter__(self) -> GroupSearch:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
+    def __del__(self) -> None:
         """Free what the search holds."""
-        if self.handle:
+        if getattr(self, "handle", None):
             loops.close_pricing(self.handle)
             self.handle = None
-
-    def __del__(self) -> None:
-        """Searches are kept, and forgotten."""
-        self.close()
 
     def columns(self, nodes: int, room: int, budget: Budget) -> tuple[list[PricedGroup], bool]:
         """The next groups, at most ``room``, within ``nodes`` nodes; and whether there are no others.
