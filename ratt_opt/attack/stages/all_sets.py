@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.graph.group_list import GroupList
     from ratt_opt.graph.threat import Threat
+    from ratt_opt.problem import Attack
 
 
 __all__ = ["AllSets", "Reachability", "ThresholdsOfFewStage", "ThresholdsStage", "decide"]
@@ -83,6 +84,7 @@ class AllSets:
         self._graph = groups_of(self._threat)
         self._table, self._valued = np.empty(0 if self._team else 2**task.values.n), 0
         self._below: SetsBelow | None = None
+        self._starts: Starts | None = None
         self._steps = task.params.all_sets.first_steps
 
     def run(self) -> Stop:
@@ -102,6 +104,8 @@ class AllSets:
             )
             if answer.is_reachable:
                 self._offer(answer.groups, answer.blinded)
+                if self._starts is not None:  # from a mild attack the threshold would come down in many steps
+                    self._anneal(self._starts, bracket.attack)
             elif answer.is_reachable is not None:
                 bracket.raise_lower(min(self._value(answer.following), bracket.upper))
             if not bracket.is_closed:
@@ -132,17 +136,23 @@ class AllSets:
         if self._team is not None and self._team.robots <= self.task.params.all_sets.few:
             source = self._team.all_values()
         if isinstance(source, Team):  # with a table the next threshold is decided sooner than an attack is annealed
-            self._anneal(source)
+            params = self.task.params
+            moves = params.all_sets.moves * self._graph.robots
+            self._starts = Starts(source, Links.of(self._threat), self._threat, params.annealing, moves=moves)
+            self._anneal(self._starts)
         groups, _ = self._graph.all(self.task.budget)
         self._below = SetsBelow(source, self._threat.protected_robots, groups, self._threat.n_blinded)
         return self._below
 
-    def _anneal(self, team: Team) -> None:
-        params, moves = self.task.params, self.task.params.all_sets.moves * self._graph.robots
-        starts = Starts(team, Links.of(self._threat), self._threat, params.annealing, moves=moves)
+    def _anneal(self, starts: Starts, near: Attack | None = None) -> None:
+        """Offer the best of some annealed attacks, or of one that begins with a known attack."""
+        budget = self.task.budget
         try:
-            for _ in range(params.all_sets.starts):
-                starts.next(self.task.budget)
+            if near is not None:
+                starts.near(near, budget)
+            else:
+                for _ in range(self.task.params.all_sets.starts):
+                    starts.next(budget)
         finally:
             if starts.best is not None:
                 self.task.offer(starts.best.attack(self._threat))
