@@ -79,11 +79,8 @@ def _bound_by_weakest(task: AttackTask, team: Team, size: int, budget: Budget) -
     bracket, depth = task.bracket, task.params.bounds.in_depth
     weakest = min(map(team.value, weak_sets_of_size(team, size, budget)), default=np.inf)
     search = LeastSetSearch(team, size, min(weakest, bracket.upper), bracket.lower, in_depth=depth)
-    for found in search.run(budget):
-        if found is not None:
-            search.threshold = min(search.threshold, team.value(found))
-        bracket.raise_lower(min(search.lower, search.threshold * (1 - ROUNDING)))
-    bracket.raise_lower(search.threshold * (1 - ROUNDING))
+    for bound in search.rising_bounds(budget):
+        bracket.raise_lower(bound * (1 - ROUNDING))
 
 
 def _offer_cut(task: AttackTask, single: FloatArray) -> None:

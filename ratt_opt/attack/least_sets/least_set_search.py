@@ -139,6 +139,19 @@ class LeastSetSearch:
             yield None
         self._nodes.clear()
 
+    def rising_bounds(self, budget: Budget) -> Iterator[float]:
+        """Yield bounds on the least set as they rise, up to its value; each set found lowers the threshold.
+
+        Raises
+        ------
+        OutOfBudget : the budget is spent; the bounds hold.
+        """
+        for found in self.run(budget):
+            if found is not None:
+                self.threshold = min(self.threshold, self.team.value(found))
+            yield min(self.lower, self.threshold)
+        yield self.threshold
+
     def _search_whole(self, sets: BoundedSets, budget: Budget) -> Found:
         """Search in depth without bounds; to the end if there are none."""
         most = next(nodes for robots, nodes in self.team.params.set_search.whole if self.team.robots <= robots)

@@ -160,11 +160,8 @@ class WeakestOfForcedSizeStage(Stage[SizeVectorSearch]):
         team, threat, bracket = attack.team, attack.threat, attack.bracket
         size = forced_group_size(team.robots, threat.n_blinded, threat.alpha_c)
         search = LeastSetSearch(team, size, bracket.goal, bracket.lower)
-        for found in search.run(attack.task.budget):
-            if found is not None:
-                search.threshold = min(search.threshold, team.value(found))
-            bracket.raise_lower(min(search.lower, search.threshold))
-        bracket.raise_lower(search.threshold)
+        for bound in search.rising_bounds(attack.task.budget):
+            bracket.raise_lower(bound)
 
 
 class AnnealedOnStage(Stage[SizeVectorSearch]):
