@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.params import CoverParams
+    from ratt_opt.attack.params.sizes import CoverParams
     from ratt_opt.attack.size_vectors.disjoint_sets import MaskArray, SetList
     from ratt_opt.budget import Budget
 

@@ -134,8 +134,7 @@ class SizeDecision:
             return None, False
         must = sum(1 << k for k, robot in enumerate(self._order.tolist()) if robot in self._must)
         search = FamilySearch(lists, vector, n_blinded=self._threat.n_blinded, must=must, threshold=threshold)
-        found = next(search.run(budget), None)
-        return found, not search.is_open
+        return search.run(budget)
 
     @property
     def _must(self) -> frozenset[int]:

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.attack.params import DisjointParams
+    from ratt_opt.attack.params.sizes import DisjointParams
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
 
     MaskArray = NDArray[np.uint64]
 
-__all__ = ["MOST_ROBOTS", "DisjointSets", "Rest", "SetColumns", "SetFilter", "SetList", "list_sets"]
+__all__ = ["MOST_ROBOTS", "DisjointSets", "Rest", "SetColumns", "SetList", "list_sets"]
 
 MOST_ROBOTS = 63
 """A set is one 64-bit mask."""
@@ -51,77 +51,47 @@ class SetList:
         return SetList(self.size, self.masks[:count], self.values[:count])
 
 
-@dataclass(frozen=True, slots=True)
-class SetFilter:
-    """Condition on listed sets: a value below ``threshold``, and robots' ``costs`` (F,) with a sum below ``room``."""
-
-    threshold: float
-    costs: FloatArray
-    room: float = np.inf
-
-    @classmethod
-    def below(cls, threshold: float, n_robots: int) -> SetFilter:
-        """No costs."""
-        return cls(threshold, np.zeros(n_robots))
-
-
-def list_sets(team: Team, order: IntArray, size: int, wanted: SetFilter, budget: Budget) -> SetList | None:
-    """Every set of ``size`` robots that is wanted, or ``None`` if they are too many or too long to find.
+def list_sets(
+    team: Team,
+    order: IntArray,
+    size: int,
+    threshold: float,
+    budget: Budget,
+    *,
+    costs: FloatArray | None = None,
+    room: float = np.inf,
+) -> SetList | None:
+    """Every set of ``size`` robots below a threshold, or ``None`` if they are too many or too long to find.
 
     Parameters
     ----------
     order : (F,) robots to choose from, F <= 63; bit ``k`` of a mask is ``order[k]``; strongest first is best, as
         the search goes from the last to the first
+    costs : (F,) of robots, whose sum has to be below ``room``
 
     Raises
     ------
     OutOfBudget : the time is up, or too few nodes are left for the next look at the clock.
     """
-    listing = _Listing(team, order, size, wanted)
-    for _ in range(team.params.disjoint.looks):
-        most = budget.nodes_left(team.params.disjoint.nodes_of_look)
-        before = listing.nodes
-        finished = listing.go_on(most, budget)
-        budget.nodes += listing.nodes - before
-        if finished:
-            return listing.found()
-        if listing.count > team.params.disjoint.most_sets:
+    search, params = SetSearch(team.among(order), size, threshold, costs=costs, limit=room), team.params.disjoint
+    masks, values = np.zeros(4096, np.uint64), np.zeros(4096)
+    count, is_finished, pace = 0, False, search.pace
+    for _ in range(params.looks):
+        before = search.nodes
+        stop = before + budget.nodes_left(params.nodes_of_look)
+        while search.nodes < stop and not (is_finished or count > params.most_sets or budget.is_over):
+            if count == len(masks):
+                masks, values = (np.concatenate([array, np.zeros_like(array)]) for array in (masks, values))
+            units = min(pace.units, stop - search.nodes)
+            with pace.timed(units):
+                count, is_finished = search.fill(units, masks, values, count)
+        budget.nodes += search.nodes - before
+        if is_finished:
+            ranked = np.argsort(values[:count], kind="stable")
+            return SetList(size, masks[ranked], values[ranked])
+        if count > params.most_sets:
             return None
     return None
-
-
-class _Listing:
-    """A search that goes on from where it ended."""
-
-    def __init__(self, team: Team, order: IntArray, size: int, wanted: SetFilter) -> None:
-        costs = np.ascontiguousarray(wanted.costs, dtype=np.float64) if np.isfinite(wanted.room) else None
-        self._search = SetSearch(team.among(order), size, wanted.threshold, costs=costs, limit=wanted.room)
-        self._size, self.count, self._most = size, 0, team.params.disjoint.most_sets
-        self._masks, self._values = np.zeros(4096, np.uint64), np.zeros(4096)
-
-    @property
-    def nodes(self) -> int:
-        """Partial sets looked at."""
-        return self._search.nodes
-
-    def go_on(self, nodes: int, budget: Budget) -> bool:
-        """Continue the listing for at most ``nodes`` nodes; return whether every set is decided."""
-        stop, pace = self._search.nodes + nodes, self._search.pace
-        while self._search.nodes < stop and self.count <= self._most and not budget.is_over:
-            if self.count == len(self._masks):
-                self._masks = np.concatenate([self._masks, np.zeros_like(self._masks)])
-                self._values = np.concatenate([self._values, np.zeros_like(self._values)])
-            units = min(pace.units, stop - self._search.nodes)
-            with pace.timed(units):
-                self.count, is_finished = self._search.fill(units, self._masks, self._values, self.count)
-            if is_finished:
-                return True
-        return False
-
-    def found(self) -> SetList:
-        """The sets, lowest first."""
-        ranked = np.argsort(self._values[: self.count], kind="stable")
-        return SetList(self._size, self._masks[ranked], self._values[ranked])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -210,11 +180,6 @@ class DisjointSets:
             stack=address_of(first),
             best=address(self._best),
         )
-
-    @property
-    def value(self) -> float:
-        """Least largest value found, or the threshold."""
-        return float(self._record.threshold)
 
     def family(self) -> list[int]:
         """Masks of the best family found; empty if none was."""
