@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 from analysis.schedule import TABLES
 from ratt_opt.attack import params as parameters
-from ratt_opt.attack.params import SetSearchParams
+from ratt_opt.attack.params.least_sets import SetSearchParams
 from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold

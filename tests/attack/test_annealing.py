@@ -7,7 +7,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.attack.annealing import Starts
-from ratt_opt.attack.params import AnnealingParams
+from ratt_opt.attack.params.groups import AnnealingParams
 from ratt_opt.attack.team import Links, Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.oracles import brute_force_worst_case

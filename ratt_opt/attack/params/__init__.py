@@ -8,76 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ratt_opt._params import check_at_least_one
-from ratt_opt.attack.params.groups import (
-    AllSetsParams,
-    AnnealingParams,
-    AttackBoundParams,
-    DualPriceParams,
-    ListedParams,
-    MasterParams,
-    PricingParams,
-    ThresholdParams,
-)
-from ratt_opt.attack.params.least_sets import (
-    AscentParams,
-    AxisParams,
-    LimitParams,
-    PolytopeParams,
-    SetExchangeParams,
-    SetSearchParams,
-    UnderestimatorParams,
-)
-from ratt_opt.attack.params.size_vectors import (
-    CoverParams,
-    DisjointParams,
-    FamilyExchangeParams,
-    FamilyParams,
-    LargestGroupParams,
-    PossibleSizeParams,
-    SizeVectorParams,
-)
-from ratt_opt.attack.params.stages import (
-    BranchingParams,
-    CriterionParams,
-    ProtectionParams,
-    StageParams,
-    ValueAnnealingParams,
-)
+from ratt_opt.attack.params import groups, least_sets, schedules, sizes
 from ratt_opt.errors import InputError
 from ratt_opt.graph.params import TreeParams
 
-__all__ = [
-    "DEFAULT",
-    "AllSetsParams",
-    "AnnealingParams",
-    "AscentParams",
-    "AttackBoundParams",
-    "AttackParams",
-    "AxisParams",
-    "BranchingParams",
-    "CoverParams",
-    "CriterionParams",
-    "DisjointParams",
-    "DualPriceParams",
-    "FamilyExchangeParams",
-    "FamilyParams",
-    "LargestGroupParams",
-    "LimitParams",
-    "ListedParams",
-    "MasterParams",
-    "PolytopeParams",
-    "PossibleSizeParams",
-    "PricingParams",
-    "ProtectionParams",
-    "SetExchangeParams",
-    "SetSearchParams",
-    "SizeVectorParams",
-    "StageParams",
-    "ThresholdParams",
-    "TreeParams",
-    "UnderestimatorParams",
-    "ValueAnnealingParams",
-]
+__all__ = ["DEFAULT", "AttackParams"]
 
 AT_LEAST_ONE = (
     "criterion.starts_for", "branching.at_once", "protection.at_once", "all_sets.block", "annealing.longer",
@@ -94,34 +29,34 @@ class AttackParams:
     ``worst_case_attack(..., params=params)`` uses them, and ``ratt-opt attack --params FILE`` reads them from TOML.
     """
 
-    stages: StageParams = field(default_factory=StageParams)
-    criterion: CriterionParams = field(default_factory=CriterionParams)
-    value_annealing: ValueAnnealingParams = field(default_factory=ValueAnnealingParams)
-    branching: BranchingParams = field(default_factory=BranchingParams)
-    protection: ProtectionParams = field(default_factory=ProtectionParams)
-    all_sets: AllSetsParams = field(default_factory=AllSetsParams)
-    annealing: AnnealingParams = field(default_factory=AnnealingParams)
-    bounds: AttackBoundParams = field(default_factory=AttackBoundParams)
+    stages: schedules.StageParams = field(default_factory=schedules.StageParams)
+    criterion: schedules.CriterionParams = field(default_factory=schedules.CriterionParams)
+    value_annealing: schedules.ValueAnnealingParams = field(default_factory=schedules.ValueAnnealingParams)
+    branching: schedules.BranchingParams = field(default_factory=schedules.BranchingParams)
+    protection: schedules.ProtectionParams = field(default_factory=schedules.ProtectionParams)
+    all_sets: groups.AllSetsParams = field(default_factory=groups.AllSetsParams)
+    annealing: groups.AnnealingParams = field(default_factory=groups.AnnealingParams)
+    bounds: groups.AttackBoundParams = field(default_factory=groups.AttackBoundParams)
     trees: TreeParams = field(default_factory=TreeParams)
-    threshold: ThresholdParams = field(default_factory=ThresholdParams)
-    pricing: PricingParams = field(default_factory=PricingParams)
-    dual_prices: DualPriceParams = field(default_factory=DualPriceParams)
-    master: MasterParams = field(default_factory=MasterParams)
-    listed: ListedParams = field(default_factory=ListedParams)
-    set_exchanges: SetExchangeParams = field(default_factory=SetExchangeParams)
-    limits: LimitParams = field(default_factory=LimitParams)
-    polytopes: PolytopeParams = field(default_factory=PolytopeParams)
-    set_search: SetSearchParams = field(default_factory=SetSearchParams)
-    ascent: AscentParams = field(default_factory=AscentParams)
-    underestimator: UnderestimatorParams = field(default_factory=UnderestimatorParams)
-    axis: AxisParams = field(default_factory=AxisParams)
-    size_vectors: SizeVectorParams = field(default_factory=SizeVectorParams)
-    family_exchanges: FamilyExchangeParams = field(default_factory=FamilyExchangeParams)
-    largest_groups: LargestGroupParams = field(default_factory=LargestGroupParams)
-    disjoint: DisjointParams = field(default_factory=DisjointParams)
-    families: FamilyParams = field(default_factory=FamilyParams)
-    family_bound: CoverParams = field(default_factory=CoverParams)
-    possible_sizes: PossibleSizeParams = field(default_factory=PossibleSizeParams)
+    threshold: groups.ThresholdParams = field(default_factory=groups.ThresholdParams)
+    pricing: groups.PricingParams = field(default_factory=groups.PricingParams)
+    dual_prices: groups.DualPriceParams = field(default_factory=groups.DualPriceParams)
+    master: groups.MasterParams = field(default_factory=groups.MasterParams)
+    listed: groups.ListedParams = field(default_factory=groups.ListedParams)
+    set_exchanges: least_sets.SetExchangeParams = field(default_factory=least_sets.SetExchangeParams)
+    limits: least_sets.LimitParams = field(default_factory=least_sets.LimitParams)
+    polytopes: least_sets.PolytopeParams = field(default_factory=least_sets.PolytopeParams)
+    set_search: least_sets.SetSearchParams = field(default_factory=least_sets.SetSearchParams)
+    ascent: least_sets.AscentParams = field(default_factory=least_sets.AscentParams)
+    underestimator: least_sets.UnderestimatorParams = field(default_factory=least_sets.UnderestimatorParams)
+    axis: least_sets.AxisParams = field(default_factory=least_sets.AxisParams)
+    size_vectors: sizes.SizeVectorParams = field(default_factory=sizes.SizeVectorParams)
+    family_exchanges: sizes.FamilyExchangeParams = field(default_factory=sizes.FamilyExchangeParams)
+    largest_groups: sizes.LargestGroupParams = field(default_factory=sizes.LargestGroupParams)
+    disjoint: sizes.DisjointParams = field(default_factory=sizes.DisjointParams)
+    families: sizes.FamilyParams = field(default_factory=sizes.FamilyParams)
+    family_bound: sizes.CoverParams = field(default_factory=sizes.CoverParams)
+    possible_sizes: sizes.PossibleSizeParams = field(default_factory=sizes.PossibleSizeParams)
 
     def __post_init__(self) -> None:
         """Check what an attack could not go on without. ``InputError`` : it is less than 1."""

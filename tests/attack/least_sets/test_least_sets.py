@@ -15,7 +15,7 @@ from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.least_sets.sets_of_size import SetFamily
 from ratt_opt.attack.least_sets.underestimator import affine_underestimator
 from ratt_opt.attack.least_sets.weakest_axis import weakest_axis
-from ratt_opt.attack.params import SetSearchParams
+from ratt_opt.attack.params.least_sets import SetSearchParams
 from ratt_opt.attack.team import Team
 from ratt_opt.budget import Budget, OutOfBudget
 from tests.attack.engine import NO_LISTS

@@ -11,7 +11,7 @@ import ratt_opt as ro
 from ratt_opt import AttackParams
 from ratt_opt.attack import team as team_module
 from ratt_opt.attack.least_sets import exchanges
-from ratt_opt.attack.params import FamilyExchangeParams
+from ratt_opt.attack.params.sizes import FamilyExchangeParams
 from ratt_opt.attack.size_vectors import weak_families
 from ratt_opt.attack.size_vectors.size_vector_search import SizeVectorSearch
 from ratt_opt.attack.task import AttackBracket, AttackTask, PlanValues

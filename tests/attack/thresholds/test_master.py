@@ -6,7 +6,7 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from ratt_opt.attack.params import MasterParams
+from ratt_opt.attack.params.groups import MasterParams
 from ratt_opt.attack.thresholds.dual_prices import GroupPrices, KnownGroup
 from tests.strategies import team_problem
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from ratt_opt import AttackParams
-from ratt_opt.attack.params import PricingParams
+from ratt_opt.attack.params.groups import PricingParams
 from ratt_opt.attack.team import Links
 from ratt_opt.attack.thresholds.pricing import BLINDED, UNIT, GroupSearch, PricingProblem, Question, _least_cuts
 from ratt_opt.budget import Budget

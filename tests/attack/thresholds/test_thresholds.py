@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ratt_opt as ro
-from ratt_opt.attack.params import MasterParams
+from ratt_opt.attack.params.groups import MasterParams
 from ratt_opt.attack.stages.all_sets import decide
 from ratt_opt.attack.team import Team
 from ratt_opt.attack.thresholds import exact_cover
