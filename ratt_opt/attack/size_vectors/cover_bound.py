@@ -36,10 +36,6 @@ if TYPE_CHECKING:
 __all__ = ["CoverBound", "SetClasses", "cover_bound"]
 
 
-PART = 12
-"""Robots of a table of sums."""
-
-
 @dataclass(frozen=True, slots=True)
 class SetClasses:
     """``counts[c]`` disjoint sets are to be chosen from ``lists[c]``; the others of N robots are the rest.
@@ -260,9 +256,9 @@ class _DualProgram:
 
 def _sums(masks: MaskArray, amounts: FloatArray) -> FloatArray:
     """(K,) sum of the amounts of the robots in each mask."""
-    sums = np.zeros(len(masks))
-    for first in range(0, len(amounts), PART):
-        sums += sums_of_subsets(amounts[first : first + PART])[masks >> np.uint64(first) & np.uint64(2**PART - 1)]
+    sums, part = np.zeros(len(masks)), 12  # robots of a table of sums
+    for first in range(0, len(amounts), part):
+        sums += sums_of_subsets(amounts[first : first + part])[masks >> np.uint64(first) & np.uint64(2**part - 1)]
     return sums
 
 
