@@ -1,10 +1,10 @@
 """Stages: bounds by single robots, and by their number if all are alike.
 
 Some group keeps ``k`` unblinded robots (``forced_survivors``). By monotonicity it is worth at least the k-th smallest
-individual value, and at least the strongest robot that cannot be blinded. Of set functions that are known by their
-values alone, where theory proves the function submodular, every robot adds at least what it adds on top of all others
-of the plan; where the function states a bound ``c`` on its total curvature, at least ``1 - c`` of its individual value.
-The ``k`` least of these add up to a bound.
+individual value, and at least the strongest robot that cannot be blinded. More can be said of some set functions that
+are known by their values alone. If theory proves the function submodular, every robot adds at least what it adds on top
+of all others of the plan; if the function states a bound ``c`` on its total curvature, at least ``1 - c`` of its
+individual value. The ``k`` least of these add up to a bound.
 """
 
 from __future__ import annotations
