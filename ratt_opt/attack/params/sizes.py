@@ -108,15 +108,9 @@ class FamilyParams:
     """Search of all families of one size vector.
 
     ``few_sets`` : largest number of sets of a size that are listed without a bound first
-    ``looks`` : at the clock, in a search for disjoint sets, before its node is divided
-    ``few_choices`` : sets of one size that a node is divided by
-    ``clear`` : weight of two robots together, from 0 or 1, up to which no node is divided on them
     """
 
     few_sets: int = 1_000_000
-    looks: int = 10
-    few_choices: int = 12
-    clear: float = 0.02
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -26,9 +26,9 @@ from ratt_opt.graph.communication import sums_of_subsets
 from ratt_opt.highs import LinearProgram, rows_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable
 
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.params.sizes import CoverParams
     from ratt_opt.attack.size_vectors.disjoint_sets import MaskArray, SetList
     from ratt_opt.budget import Budget
@@ -38,26 +38,17 @@ __all__ = ["CoverBound", "SetClasses", "cover_bound"]
 
 @dataclass(frozen=True, slots=True)
 class SetClasses:
-    """``counts[c]`` disjoint sets are to be chosen from ``lists[c]``; the others of N robots are the rest.
-
-    ``taken`` : mask of robots that have their group already: they are in no set and not in the rest
-    """
+    """``counts[c]`` disjoint sets are to be chosen from ``lists[c]``; the others of N robots are the rest."""
 
     n_robots: int
     lists: tuple[SetList, ...] = ()
     counts: tuple[int, ...] = ()
-    taken: int = 0
 
     @property
     def rest(self) -> int:
         """Robots outside the sets."""
         chosen = sum(k * low.size for k, low in zip(self.counts, self.lists, strict=True))
-        return self.n_robots - self.taken.bit_count() - chosen
-
-    @property
-    def free(self) -> BoolArray:
-        """(N,) robots that are not taken."""
-        return np.array([not self.taken >> i & 1 for i in range(self.n_robots)])
+        return self.n_robots - chosen
 
     @property
     def is_empty(self) -> bool:
@@ -68,36 +59,20 @@ class SetClasses:
         """Add a class: ``count`` sets of a list."""
         return replace(self, lists=(*self.lists, low), counts=(*self.counts, count))
 
-    def where(self, keeps: Callable[[SetList], SetList]) -> SetClasses:
-        """Filter every list."""
-        return replace(self, lists=tuple(keeps(low) for low in self.lists))
-
-    def having(self, c: int, mask: int) -> SetClasses:
-        """Return the classes left after a set of class ``c`` is chosen."""
-        counts = [k - (d == c) for d, k in enumerate(self.counts)]
-        taken, chosen = self.taken | mask, np.uint64(mask)
-        lists = [low.where(low.masks & chosen == 0) for low in self.lists]
-        kept = [d for d, k in enumerate(counts) if k]
-        return replace(self, lists=tuple(lists[d] for d in kept), counts=tuple(counts[d] for d in kept), taken=taken)
-
 
 @dataclass(frozen=True, slots=True)
 class CoverBound:
-    """No family is worth less than ``bound``, by these ``potentials`` (N,) and ``weights`` (C,) of the sizes.
-
-    ``together`` : (N, N) how much a relaxed family has each two robots in one set
-    """
+    """No family is worth less than ``bound``, by these ``potentials`` (N,) and ``weights`` (C,) of the sizes."""
 
     classes: SetClasses
     bound: float
     potentials: FloatArray
     weights: FloatArray
-    together: FloatArray
 
     @property
     def _theta(self) -> float:
         """The least potential of those that the rest takes at best."""
-        pi, rest = self.potentials[self.classes.free], self.classes.rest
+        pi, rest = self.potentials, self.classes.rest
         return float(np.sort(pi)[len(pi) - rest]) if rest else float(pi.max(initial=0.0))
 
     @property
@@ -131,7 +106,6 @@ class CoverBound:
             counts=np.array(self.classes.counts, dtype=np.int64),
             rest_costs=self.rest_costs,
             room=room,
-            taken=self.classes.taken,
         )
 
 
@@ -157,14 +131,15 @@ def cover_bound(classes: SetClasses, threshold: float, budget: Budget, params: C
         potentials, weights, claimed = claim
         bound = program.bound(potentials, weights)
         if best is None or bound > best.bound:
-            best = CoverBound(classes, bound, potentials, weights, program.together())
+            best = CoverBound(classes, bound, potentials, weights)
         if best.bound >= threshold or claimed - best.bound <= params.enough * max(threshold - best.bound, 0.0):
             break
         if budget.stop() not in {None, Stop.NODES}:
             break
     if best is None:
         budget.check()
-        return CoverBound(classes, -np.inf, *program.without_claim())
+        counts = classes.counts
+        return CoverBound(classes, -np.inf, np.zeros(classes.n_robots), np.full(len(counts), 1.0 / sum(counts)))
     return best
 
 
@@ -181,14 +156,12 @@ class _DualProgram:
         self.classes, self.scale = classes, scale
         number = np.array(classes.counts, dtype=np.float64)
         self._cost = np.concatenate([np.ones(n), number, np.zeros(k)])
-        lower = np.concatenate([-params.box * classes.free, np.full(k, -params.box * n), np.zeros(k)])
-        upper = np.concatenate(
-            [params.box * classes.free * (classes.rest == 0), np.full(k, params.box * n), np.ones(k)]
-        )
+        box = params.box
+        lower = np.concatenate([np.full(n, -box), np.full(k, -box * n), np.zeros(k)])
+        upper = np.concatenate([np.full(n, box * (classes.rest == 0)), np.full(k, box * n), np.ones(k)])
         sizes = list(range(n + k, n + 2 * k)), number.tolist()
         self._program = LinearProgram(self._cost, lower, upper, rows=rows_of([sizes], [1.0], [1.0]), maximise=True)
         self._entered: dict[tuple[int, int], None] = {}
-        self._duals = np.zeros(0)
         self._enter(self._seeds())
 
     def solve(self) -> tuple[FloatArray, FloatArray, float] | None:
@@ -196,7 +169,6 @@ class _DualProgram:
         claim = self._program.solve()
         if not len(claim.x):
             return None
-        self._duals = np.abs(claim.duals[1:])
         n, k = self.classes.n_robots, len(self.classes.lists)
         weights = np.maximum(claim.x[n + k :], 0.0)
         total = float(weights @ self.classes.counts)
@@ -214,22 +186,10 @@ class _DualProgram:
             fresh.extend((c, int(k)) for k in np.argpartition(reduced, few - 1)[:few])
             least.append(float(reduced.min()))
         self._enter(fresh)
-        own = np.sort(potentials[classes.free])
+        own = np.sort(potentials)
         inside, sizes = float(own[: len(own) - classes.rest].sum()), np.abs(least) @ classes.counts
         rounding = 1e-14 * float(np.abs(own).sum() + sizes)
         return inside + float(np.array(classes.counts) @ np.array(least)) - rounding
-
-    def together(self) -> FloatArray:
-        """(N, N) weight of the sets that hold each two robots, in the relaxed family that the program claims."""
-        n = self.classes.n_robots
-        masks = np.array([self.classes.lists[c].masks[k] for c, k in self._entered][: len(self._duals)], np.uint64)
-        members = (masks[:, None] >> np.arange(n, dtype=np.uint64) & np.uint64(1)).astype(np.float64)
-        return np.asarray(members.T @ (self._duals[: len(masks), None] * members))
-
-    def without_claim(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Potentials, weights and fractions that say nothing."""
-        n, counts = self.classes.n_robots, self.classes.counts
-        return np.zeros(n), np.full(len(counts), 1.0 / sum(counts)), np.zeros((n, n))
 
     def _enter(self, sets: Iterable[tuple[int, int]]) -> None:
         fresh = [one for one in dict.fromkeys(sets) if one not in self._entered]

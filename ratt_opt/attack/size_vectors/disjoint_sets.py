@@ -20,7 +20,7 @@ from ratt_opt.native.loops import ChoiceRecord, DisjointSetsRecord, loops
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.params.sizes import DisjointParams
     from ratt_opt.attack.team import Team
     from ratt_opt.budget import Budget
@@ -40,10 +40,6 @@ class SetList:
     size: int
     masks: MaskArray
     values: FloatArray
-
-    def where(self, kept: BoolArray) -> SetList:
-        """Return the sets that are kept (K,)."""
-        return SetList(self.size, self.masks[kept], self.values[kept])
 
     def below(self, threshold: float) -> SetList:
         """Return the sets worth less than a threshold."""
@@ -100,7 +96,7 @@ class SetColumns:
 
     ``masks``, ``values``, ``costs`` : (K,); ``starts`` : (C, N + 1), those of size ``c`` whose lowest bit is ``r`` are
     ``starts[c, r]:starts[c, r + 1]``; ``counts`` : (C,) sets to choose of each size; ``rest_costs`` : (N,) of leaving
-    robot ``r`` in the rest; ``room`` : costs have to stay below this; ``taken`` : mask of robots that are in neither
+    robot ``r`` in the rest; ``room`` : costs have to stay below this
     """
 
     masks: MaskArray
@@ -110,7 +106,6 @@ class SetColumns:
     counts: IntArray
     rest_costs: FloatArray
     room: float
-    taken: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +152,7 @@ class DisjointSets:
         for level, counts in zip(self._stack, self._counts, strict=True):
             level.counts = address(counts)
         first = self._stack[0]
-        first.decided, first.option, first.value = columns.taken, -1, -np.inf
+        first.decided, first.option, first.value = 0, -1, -np.inf
         first.places, first.kept = rest.size, rest.size - rest.n_blinded
         self._record = DisjointSetsRecord(
             robots=robots,
@@ -185,16 +180,14 @@ class DisjointSets:
         """Masks of the best family found; empty if none was."""
         return [int(mask) for mask in self._columns.masks[self._best[: self._record.found]]]
 
-    def run(self, budget: Budget, looks: float = np.inf) -> bool:
-        """Search to the end (true), or until the clock was looked at so often.
+    def run(self, budget: Budget) -> None:
+        """Search to the end.
 
         Raises
         ------
-        OutOfBudget : the time is up, or no node is left.
+        OutOfBudget : the time is up, or no node is left; :meth:`family` has what was found.
         """
-        while looks > 0:
+        is_finished = False
+        while not is_finished:
             budget.spend(budget.nodes_left(self._params.work_nodes))
-            if loops.search_disjoint(self._record, self._params.work):
-                return True
-            looks -= 1
-        return False
+            is_finished = bool(loops.search_disjoint(self._record, self._params.work))

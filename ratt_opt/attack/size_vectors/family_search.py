@@ -2,26 +2,22 @@
 
 All sets of each size below the threshold are listed, largest size first. A linear program bounds the families
 (``cover_bound.py``) and says what each set costs against the bound; few sets cost less than the room. They are
-searched for disjoint ones (``disjoint_sets.py``). What takes long there is divided by whether two robots share a
-group (Ryan and Foster, Integer programming approach to scheduling, 1981) and bounded again.
+searched for disjoint ones (``disjoint_sets.py``).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
-from functools import partial
 from math import comb
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from ratt_opt.attack.size_vectors.cover_bound import SetClasses, cover_bound
 from ratt_opt.attack.size_vectors.disjoint_sets import DisjointSets, Rest, list_sets
 from ratt_opt.budget import OutOfBudget
-from ratt_opt.search.open_nodes import OpenNodes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ratt_opt._validation import FloatArray, IntArray
     from ratt_opt.attack.size_vectors.disjoint_sets import SetList
     from ratt_opt.attack.team import Team
@@ -60,16 +56,6 @@ class SetLists:
 Groups = tuple[frozenset[int], ...]
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class _FamilyNode:
-    """Families that hold the ``chosen`` sets and others of the ``classes``; none is worth less than ``bound``."""
-
-    bound: float
-    serial: int
-    classes: SetClasses = field(compare=False)
-    chosen: tuple[int, ...] = field(compare=False, default=())
-
-
 class FamilySearch:
     """Search for a family of ``sizes`` among the robots of ``lists`` that is worth less than ``threshold``.
 
@@ -81,7 +67,6 @@ class FamilySearch:
         self._larger = sorted(Counter(size for size in sizes if size > 1).items(), reverse=True)
         n_rest = len(lists.order) - sum(size * count for size, count in self._larger)
         self._rest = Rest(n_rest, n_blinded, lists.single, must)
-        self._serial = 0
         self._is_open = False
         """A list is too long."""
 
@@ -97,14 +82,17 @@ class FamilySearch:
         classes = self._listed(budget)
         if classes is None:
             return None, not self._is_open
-        nodes = OpenNodes([_FamilyNode(-np.inf, 0, classes)])
-        while nodes:
-            family, children = self._decide(nodes.take(), budget)
-            if family:
-                return self._groups(family), True
-            nodes.keep(children)
-            nodes.done()
-        return None, True
+        budget.spend()
+        bound = cover_bound(classes, self._threshold, budget, self._params.family_bound)
+        if bound.bound >= self._threshold:
+            return None, True
+        search = DisjointSets(bound.columns(self._threshold), self._rest, self._threshold, self._params.disjoint)
+        try:
+            search.run(budget)
+        except OutOfBudget:
+            if not search.family():
+                raise
+        return self._groups(search.family()) if search.family() else None, True
 
     def _alone(self) -> Groups | None:
         """Every robot that is not blinded is alone: one family is the best."""
@@ -134,48 +122,7 @@ class FamilySearch:
                 return None
         return classes
 
-    def _decide(self, node: _FamilyNode, budget: Budget) -> tuple[tuple[int, ...], list[_FamilyNode]]:
-        """Bound a node and search it: a family of masks, if one is found; else its children, if that takes long."""
-        if node.classes.is_empty:
-            return (), []
-        budget.spend()
-        bound = cover_bound(node.classes, self._threshold, budget, self._params.family_bound)
-        if bound.bound >= self._threshold:
-            return (), []
-        search = DisjointSets(bound.columns(self._threshold), self._rest, self._threshold, self._params.disjoint)
-        children = self._divided(replace(node, bound=max(node.bound, bound.bound)), bound.together)
-        try:
-            is_finished = search.run(budget, self._params.families.looks if children else np.inf)
-        except OutOfBudget:
-            if not search.family():
-                raise
-        if family := search.family():
-            return (*node.chosen, *family), []
-        return (), [] if is_finished else children
-
-    def _divided(self, node: _FamilyNode, together: FloatArray) -> list[_FamilyNode]:
-        """Branch on one of a few sets, else on whether two robots are together; no children if the node is integral."""
-        classes, params = node.classes, self._params.families
-        c = min(range(len(classes.lists)), key=lambda d: len(classes.lists[d].masks))
-        low, children = classes.lists[c], []
-        if len(low.masks) <= params.few_choices and len(classes.lists) + classes.counts[c] > 2:
-            for k, (mask, value) in enumerate(zip(low.masks.tolist(), low.values.tolist(), strict=True)):
-                later = replace(low, masks=low.masks[k:], values=low.values[k:])
-                lists = (*classes.lists[:c], later, *classes.lists[c + 1 :])
-                left = replace(classes, lists=lists).having(c, mask)
-                children.append(self._child(max(node.bound, value), left, (*node.chosen, mask)))
-        elif (pair := _pair(together, params.clear)) is not None:
-            first, second = (np.uint64(1) << np.uint64(bit) for bit in pair)
-            for apart in (False, True):
-                agrees = partial(_agreeing, first=first, second=second, apart=apart)
-                children.append(self._child(node.bound, classes.where(agrees), node.chosen))
-        return children
-
-    def _child(self, bound: float, classes: SetClasses, chosen: tuple[int, ...]) -> _FamilyNode:
-        self._serial += 1
-        return _FamilyNode(bound, self._serial, classes, chosen)
-
-    def _groups(self, family: tuple[int, ...]) -> Groups:
+    def _groups(self, family: Sequence[int]) -> Groups:
         """The groups of a family of masks, and the robots left alone."""
         taken = sum(family)
         groups, blinded = [self._lists.robots(mask) for mask in family], 0
@@ -187,16 +134,3 @@ class FamilySearch:
             else:
                 groups.append(frozenset([robot]))
         return tuple(groups)
-
-
-def _agreeing(low: SetList, first: np.uint64, second: np.uint64, *, apart: bool) -> SetList:
-    """The sets that hold not both of two robots, or that hold both or none."""
-    one, other = low.masks & first > 0, low.masks & second > 0
-    return low.where(~(one & other) if apart else one == other)
-
-
-def _pair(together: FloatArray, clear: float) -> tuple[int, int] | None:
-    """The two robots that are together about half of the time; ``None`` if all are clear."""
-    unclear = np.triu(np.minimum(together, 1 - together), 1)
-    i, j = np.unravel_index(int(unclear.argmax()), unclear.shape)
-    return (int(i), int(j)) if unclear[i, j] > clear else None

@@ -31,17 +31,16 @@ def run_large(problem, elements, max_nodes=None):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(25))
-@pytest.mark.parametrize("way", ["as it is", "families", "divided", "branches"])
+@pytest.mark.parametrize("way", ["as it is", "families", "bounded lists", "branches"])
 def test_agrees_with_the_threshold_search(name, seed, way, monkeypatch):
-    """As it is; by lists and a search for disjoint sets; by divided nodes and bounds alone; by branches with hardly any
-    search in depth."""
+    """As it is; by lists and a search for disjoint sets; by lists that are cut down by bounds; by branches with hardly
+    any search in depth."""
     if way == "branches":
         go(monkeypatch, NO_LISTS)
-    if way in {"families", "divided"}:
+    if way in {"families", "bounded lists"}:
         go(monkeypatch, FAMILIES)
-    if way == "divided":
-        choices = {"families.looks": 0, "families.few_choices": seed % 3, "families.few_sets": 10}
-        go(monkeypatch, {(AttackParams, name): n for name, n in {**choices, "family_exchanges.shaken": 0}.items()})
+    if way == "bounded lists":
+        go(monkeypatch, {(AttackParams, "families.few_sets"): 10, (AttackParams, "family_exchanges.shaken"): 0})
     problem, elements = team_problem(seed, 4 + seed % 6, name, protect=seed % 3 == 0)
     expected = worst_value(problem, elements)
     bracket, _, stop = run_large(problem, elements)
