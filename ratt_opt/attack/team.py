@@ -48,15 +48,12 @@ def has_native_kernel(objective: SetFunction) -> TypeGuard[InformationObjective]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkParams:
-    """Cost of steps, in about multiplications (half a nanosecond each); work between two looks at the clock.
+    """Cost of steps, in about multiplications (half a nanosecond each).
 
     ``rotations`` : times as long as a trace that a largest eigenvalue takes in more than two dimensions
-    ``pairs`` : for the levels of all pairs in sets of one size, at most: more bounds sets of larger teams and states
-        better, less is met sooner by a limit or an interrupt
     """
 
     rotations: int = 8
-    pairs: float = 1e8
 
 
 WORK = WorkParams()

@@ -167,8 +167,7 @@ class PricingRecord(Structure):
     """A search for groups of small reduced cost."""
     team: Pointer[TeamRecord]; threshold: Double; level: Double; n_blinded: Int64; most_cut: Int64; most: Int64
     start: Int64s; robot: Int64s; back: Int64s; fixed: Bytes; seeing: Bytes; least_cut: Int64s; duals: Int64s
-    order: Int64s; blinding: Int64; unit: Int64; limit: Int64; effort: Int64; levels: Doubles; near: Int32s
-    filled: Bytes
+    order: Int64s; blinding: Int64; unit: Int64; limit: Int64; effort: Int64
 
 @record
 class GroupTreeRecord(Structure):
@@ -272,8 +271,6 @@ class Loops(Protocol):
 
     # lattice.h
     def disjoint_slack(self, values: Doubles, first: Int64, last: Int64, slack: Doubles, sets: Int64s) -> None: ...
-    def overlapping_slack(self, values: Doubles, count: Int64, first: Int64, last: Int64, slack: Doubles,
-                          sets: Int64s) -> None: ...
     def gain_ratio(self, values: Doubles, axes: Int, sizes: Int64s, first: Int64, last: Int64, noise: Double,
                    positions: Int64s, ratios: Doubles, sets: Int64s) -> None: ...
 

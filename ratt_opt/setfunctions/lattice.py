@@ -68,7 +68,8 @@ def disjoint_slack(values: FloatArray, budget: Budget) -> tuple[float, int, int]
 
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of floats.
     """
-    table, (slack, sets) = address(checked("values", values, np.float64, (len(values),))), _nothing()
+    table = address(checked("values", values, np.float64, (len(values),)))
+    slack, sets = np.full(1, np.inf), np.zeros(2, dtype=np.int64)
     for first, last in blocks(len(values), len(values)):
         budget.check()
         loops.disjoint_slack(table, first, last, address(slack), address(sets))
@@ -80,15 +81,15 @@ def overlapping_slack(values: FloatArray, budget: Budget) -> tuple[float, int, i
 
     Raises ``OutOfBudget``, and ``InputError`` : ``values`` is no contiguous array of floats.
     """
-    table, (slack, sets) = address(checked("values", values, np.float64, (len(values),))), _nothing()
-    for first, last in blocks(len(values), len(values)):
+    checked("values", values, np.float64, (len(values),))
+    sets, found = np.arange(len(values)), (np.inf, 0, 0)
+    for a in range(len(values)):
         budget.check()
-        loops.overlapping_slack(table, len(values), first, last, address(slack), address(sets))
-    return float(slack[0]), int(sets[0]), int(sets[1])
-
-
-def _nothing() -> tuple[FloatArray, IntArray]:
-    return np.full(1, np.inf), np.zeros(2, dtype=np.int64)
+        slack = values[a] + values[a:] - values[a | sets[a:]]
+        b = int(slack.argmin())
+        if slack[b] < found[0]:
+            found = float(slack[b]), a, a + b
+    return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,7 +26,7 @@ CHANGES = {
         "int64_t nodes, depth, most_nodes;",
     ),
     "a field gets another type": ("groups", "int32_t robot, column;", "int64_t robot, column;"),
-    "an array gets another type": ("pricing", "int32_t *near;", "int64_t *near;"),
+    "an array gets another type": ("groups", "int32_t *fitting;", "int64_t *fitting;"),
     "a field is new": ("sets_of_size", "int64_t next, leaves, enters;", "int64_t next, leaves, enters, more;"),
     "an array is longer": ("groups", "int64_t room[3];", "int64_t room[4];"),
     "two arguments change places": ("groups", "int64_t gap, int64_t room", "int64_t room, int64_t gap"),

@@ -98,7 +98,7 @@ def test_parts_of_a_pass_are_the_whole(monkeypatch):
     monkeypatch.setattr(Budget, "check", lambda _: looks.append(None))
     monkeypatch.setattr(_blocks, "STEPS", 1 << 12)
     assert found(Budget()) == whole
-    assert len(looks) == 16 * 15 // 2 + 256 // 16 * 2
+    assert len(looks) == 16 * 15 // 2 + 256 // 16 + 256
 
 
 def test_what_c_may_not_read_is_refused():

@@ -129,11 +129,9 @@ class ThresholdParams:
 class PricingParams:
     """Search for groups of negative reduced cost.
 
-    ``paired`` : robots of a team whose pairs are compared; larger teams are bounded by single robots, more loosely
     ``effort`` : robots valued at most to decide what a group needs; ``work`` : multiplications for it, at most
     """
 
-    paired: int = 100
     effort: int = 200_000
     work: int = 50_000_000
 

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from ctypes import byref, c_int64
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.attack.params import DEFAULT
-from ratt_opt.attack.team import WORK, Links, Team
+from ratt_opt.attack.team import Links, Team
 from ratt_opt.attack.thresholds.columns import UNIT
 from ratt_opt.native.library import Answered, address, address_of
 from ratt_opt.native.loops import PricingRecord, loops
@@ -44,7 +44,7 @@ BLINDED = 2
 
 
 class PricingProblem:
-    """Robots of one plan on one network; all questions share the levels computed for them."""
+    """Robots of one plan on one network."""
 
     def __init__(self, team: Team, links: Links, threat: Threat) -> None:
         self.team, self.links, self.threat = team, links, threat
@@ -58,15 +58,6 @@ class PricingProblem:
         """Build the problem of one plan; ``None`` if the compiled code does not support the objective."""
         team = Team.of(objective, elements, params)
         return None if team is None else cls(team, Links.of(threat), threat)
-
-    @cached_property
-    def tables(self) -> tuple[FloatArray, NDArray[np.int32], NDArray[np.uint8]] | None:
-        """Levels of copies of two robots, the other robots by these, and which sizes are filled."""
-        robots = self.robots
-        if robots > self.team.params.pricing.paired or robots**2 * self.team.work > WORK.pairs:
-            return None
-        shape = robots + 1, robots, robots
-        return np.zeros(shape), np.zeros(shape, np.int32), np.zeros(robots + 1, np.uint8)
 
     def most_below(self, threshold: float, group: BoolArray | None = None, effort: int | None = None) -> int:
         """A size that no set of robots, or of those of a group (N,), worth less than the threshold exceeds.
@@ -92,7 +83,7 @@ class PricingProblem:
 
     def record(self, question: Question, robots: IntArray) -> PricingRecord:
         """Record that the C code reads; all arrays that it has the addresses of must be kept alive."""
-        links, tables, params = self.links, self.tables, self.team.params.pricing
+        links, params = self.links, self.team.params.pricing
         return PricingRecord(
             team=address_of(self.team.record),
             threshold=question.threshold,
@@ -112,9 +103,6 @@ class PricingProblem:
             unit=question.unit,
             limit=question.limit,
             effort=question.effort or min(params.effort, params.work // self.team.work + 1),
-            levels=tables and address(tables[0]),
-            near=tables and address(tables[1]),
-            filled=tables and address(tables[2]),
         )
 
 

@@ -32,11 +32,6 @@ typedef struct {
 
 static int64_t below(State *s, int64_t count) { return (int64_t)(uniform(&s->random) * (double)count); }
 
-static void sense(State *s, int64_t robot, double sign, double *sums) {
-    const double *own = s->a->team->information + (size_t)robot * s->width;
-    for (int t = 0; t < s->width; t++) sums[t] += sign * own[t];
-}
-
 static void fill(State *s) {
     const Anneal *a = s->a;
     for (int64_t g = 0; g < a->robots; g++) memcpy(s->sums + g * s->width, a->team->prior, (size_t)s->width * sizeof(double));
@@ -44,7 +39,7 @@ static void fill(State *s) {
     for (int64_t i = 0; i < a->robots; i++) {
         int64_t g = a->group[i];
         s->size[g]++;
-        if (!a->blind[i]) sense(s, i, 1.0, s->sums + g * s->width);
+        if (!a->blind[i]) add_information(a->team, s->sums + g * s->width, 1.0, i, s->sums + g * s->width);
         for (int64_t l = a->start[i]; l < a->start[i + 1]; l++)
             if (a->robot[l] > i && a->group[a->robot[l]] != g) s->cut += a->fixed[l] ? UNCUTTABLE : 1;
     }
@@ -114,8 +109,8 @@ static double value_after(State *s, const Move *m, int gains, double *sums) {
     changes(a, m, gains, &of_i, &of_j);
     int empties = m->kind == MOVED && !gains && s->size[m->home] == 1;
     memcpy(sums, s->sums + g * s->width, (size_t)s->width * sizeof(double));
-    if (of_i) sense(s, m->i, of_i, sums);
-    if (of_j) sense(s, m->j, of_j, sums);
+    if (of_i) add_information(a->team, sums, of_i, m->i, sums);
+    if (of_j) add_information(a->team, sums, of_j, m->j, sums);
     return empties ? 0.0 : value_of(a->team, sums);
 }
 

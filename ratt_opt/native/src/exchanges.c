@@ -32,9 +32,8 @@ static void value_group(Family *f, int64_t group) {
 /* Value of a group once `leaves` is replaced by `enters`. */
 static double exchanged(const Family *f, int64_t group, int64_t leaves, int64_t enters) {
     int width = f->team->targets * entries_of(f->team);
-    const double *sums = f->sums + group * width, *less = f->team->information + (size_t)leaves * width;
-    const double *more = f->team->information + (size_t)enters * width;
-    for (int t = 0; t < width; t++) f->one[t] = sums[t] - less[t] + more[t];
+    add_information(f->team, f->sums + group * width, -1.0, leaves, f->one);
+    add_information(f->team, f->one, 1.0, enters, f->one);
     return value_of(f->team, f->one);
 }
 

@@ -36,7 +36,7 @@ struct Search {
     int64_t visited;
     int64_t *excess, *capacity, *cost; /* of the flow */
     int *distance, *queue, *next, *order;
-    double *weight, *own, *sorted, *spare, *sums; /* (robots) thrice; (width); (robots + 2, width + robots) */
+    double *weight, *sorted, *spare, *sums; /* (robots) twice; (width); (robots + 2, width + robots) */
     uint8_t *inside, *sense, *chosen;  /* (robots) */
 };
 
@@ -47,14 +47,16 @@ double bound_of(Search *s, const Node *node, Multipliers at, double room);
 int improve(const Search *s, const Node *node, Multipliers *at, double room, double bound);
 /* An open robot next to the group, with the most links to decided ones; -1 where there is none. */
 int next_to_group(const Search *s, const int8_t *state);
+/* The node with every group. */
+Node *begin(Search *s);
 void copy_node(const Search *s, const Node *from, Node *to);
 
 /* levels.c */
 /* The sum of the `count` least of `values` (length), which are sorted in place. */
 double sum_of_least(double *values, int length, int count);
 double error_before(const Team *team);
-double value_of_copies(const Search *s, const double *sums, double times, int i, int j);
-double level_of_copies(const Search *s, const double *sums, double times, int i, int j);
+double value_of_copies(const Search *s, const double *sums, double times, int i);
+double level_of_copies(const Search *s, const double *sums, double times, int i);
 /* What the robots of a node that may sense weigh, in `weight`; lowers `most` and closes robots that cannot sense. Returns the
    most that those of a set below the threshold weigh besides robots that sense for sure. `fresh`: more of these than before. */
 double weigh(Search *s, Node *node, int fresh);

@@ -222,7 +222,7 @@ static int copies_are_enough(Proof *p, const Node *node, int size) {
     double *sorted = p->s->sorted;
     int count = 0;
     for (int i = 0; i < p->robots; i++)
-        if (MAY_SENSE(node->state[i])) sorted[count++] = value_of_copies(p->s, node->sums, size, i, -1);
+        if (MAY_SENSE(node->state[i])) sorted[count++] = value_of_copies(p->s, node->sums, size, i);
     if (count < size) return 0;
     double sum = sum_of_least(sorted, count, size);
     return p->out->averages ? sum >= size * p->s->q.threshold : sorted[0] >= p->s->q.threshold;
@@ -236,7 +236,7 @@ static void open_row(Proof *p, Row *rows, int depth, int count, int size, uint64
     rows[depth] = (Row){sensing, count, 0, size};
     for (int k = 0; size > 0 && k < count; k++) {
         int robot = order[k], at = k;
-        double value = value_of_copies(s, sums, size, robot, -1);
+        double value = value_of_copies(s, sums, size, robot);
         for (; at > 0 && worth[at - 1] > value; at--) worth[at] = worth[at - 1], order[at] = order[at - 1];
         worth[at] = value, order[at] = robot;
     }
@@ -369,7 +369,7 @@ static void narrow(Proof *p, Node *node) {
     int sure = count_sure(p, node), open = 0;
     for (int i = 0; i < p->robots; i++) {
         if (!MAY_SENSE(node->state[i])) continue;
-        if (node->found) node->worth[i] = value_of_copies(p->s, node->sums, 1, i, -1);
+        if (node->found) node->worth[i] = value_of_copies(p->s, node->sums, 1, i);
         if (node->worth[i] < p->s->q.threshold) {
             open++;
             continue;
@@ -391,7 +391,7 @@ static int weakest_inside(const Proof *p, const Node *node) {
     double least = INFINITY;
     for (int i = 0; i < p->robots; i++) {
         if (!MAY_SENSE(node->state[i]) || !IS_INSIDE(node->state[i])) continue;
-        double value = value_of_copies(p->s, node->sums, copies > 0 ? copies : 1, i, -1);
+        double value = value_of_copies(p->s, node->sums, copies > 0 ? copies : 1, i);
         if (value < least) least = value, best = i;
     }
     return best;
@@ -499,12 +499,8 @@ int grow_group_tree(Search *s, GroupTree *out, int64_t cases) {
     p.rows = malloc((n + 1) * sizeof(Row));
     int code = p.gains && p.seen && p.queue && p.rows ? PAUSED : FULL;
     if (code == PAUSED && out->count == 0) {
-        Node *node = s->nodes;
-        for (size_t i = 0; i < n; i++) node->state[i] = (int8_t)(SENSES | OUTSIDE | (s->q.seeing[i] ? 0 : BLINDED));
-        memset(node->blind, 0, n);
-        memcpy(node->sums, s->q.team->prior, (size_t)s->width * sizeof(double));
-        node->need = node->low = 0, node->found = 1, node->most = (int)s->q.most, node->cut = 0;
-        node->at = (Multipliers){0.0, 0.0, 0.0};
+        Node *node = begin(s);
+        node->low = 0, node->found = 1, node->cut = 0;
         s->depth = 1;
     }
     int64_t stop = s->visited + cases;

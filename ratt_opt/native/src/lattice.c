@@ -12,14 +12,6 @@ void disjoint_slack(const double *values, int64_t first, int64_t last, double *s
         }
 }
 
-void overlapping_slack(const double *values, int64_t count, int64_t first, int64_t last, double *slack, int64_t *sets) {
-    for (int64_t a = first; a < last; a++)
-        for (int64_t b = a; b < count; b++) {
-            double found = values[a] + values[b] - values[a | b];
-            if (found < *slack) *slack = found, sets[0] = a, sets[1] = b;
-        }
-}
-
 /* Positions of all parts of a choice, by mask over the axes where it takes part, the last axis first; how many axes. */
 static int fill_positions(int axes, const int64_t *sizes, int64_t choice, int64_t *positions) {
     int count = 0;

@@ -17,7 +17,7 @@ static int some_are_below(Search *s, int depth, int count, int size, int64_t *ef
     *effort -= count;
     for (int p = 0; p < count; p++) {
         int robot = order[p], at = p;
-        double level = level_of_copies(s, sums, size, robot, -1);
+        double level = level_of_copies(s, sums, size, robot);
         for (; at > 0 && worth[at - 1] > level; at--) worth[at] = worth[at - 1], order[at] = order[at - 1];
         worth[at] = level, order[at] = robot;
     }

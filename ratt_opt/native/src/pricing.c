@@ -114,8 +114,7 @@ static void keep(Search *s, int first, int second) {
     s->depth += first + second - 1;
 }
 
-/* The node with every group. */
-static Node *begin(Search *s) {
+Node *begin(Search *s) {
     Node *node = s->nodes;
     for (int i = 0; i < s->robots; i++) node->state[i] = (int8_t)(SENSES | OUTSIDE | (s->q.seeing[i] ? 0 : BLINDED));
     memset(node->blind, 0, (size_t)s->robots);
@@ -227,7 +226,7 @@ Search *open_pricing(const Pricing *question) {
     if (s->nodes) s->nodes[0].state = states, s->nodes[0].sums = sums;
     s->excess = malloc((2 * n + arcs) * sizeof(int64_t));
     s->distance = malloc((3 * n + (n + 2) * n) * sizeof(int));
-    s->weight = malloc((3 * n + width + (n + 2) * (width + n)) * sizeof(double));
+    s->weight = malloc((2 * n + width + (n + 2) * (width + n)) * sizeof(double));
     s->inside = malloc(3 * n);
     if (!s->nodes || !states || !sums || !s->excess || !s->distance || !s->weight || !s->inside) {
         if (!s->nodes) free(states), free(sums);
@@ -240,7 +239,7 @@ Search *open_pricing(const Pricing *question) {
     }
     s->capacity = s->excess + n, s->cost = s->capacity + arcs;
     s->queue = s->distance + n, s->next = s->queue + n, s->order = s->next + n;
-    s->own = s->weight + n, s->sorted = s->own + n, s->spare = s->sorted + n, s->sums = s->spare + width;
+    s->sorted = s->weight + n, s->spare = s->sorted + n, s->sums = s->spare + width;
     s->sense = s->inside + n, s->chosen = s->sense + n;
     return s;
 }
@@ -256,28 +255,13 @@ int list_groups_below(Search *s, int64_t nodes, int64_t room, int8_t *groups, in
     return code == FINISHED ? FINISHED : PAUSED;
 }
 
-/* A search's node with every robot of `group` (robots) inside, whatever it may cost, and any of these may be blinded. */
-static Node *whole(Search *s, const uint8_t *group) {
-    Node *node = begin(s);
-    s->q.n_blinded = s->robots;
-    for (int i = 0; i < s->robots; i++) node->state[i] = group[i] ? SENSES | BLINDED : OUTSIDE;
-    return node;
-}
-
-/* Whether `size` robots of a group may be below the threshold, as far as the effort tells. */
-static int some_may_be_below(Search *s, const uint8_t *group, int64_t size) {
-    Node *node = whole(s, group);
-    int inside = 0;
-    for (int i = 0; i < s->robots; i++) inside += group[i];
-    return may_be_below(s, node, inside - (int)size, s->q.effort) != 0;
-}
-
 int64_t most_below(Search *s, const uint8_t *group) {
-    Node *node = whole(s, group);
-    for (int i = 0; i < s->robots; i++) node->low += group[i];
-    node->low--;
+    Node *node = begin(s);
+    int inside = 0;
+    s->q.n_blinded = s->robots; /* all are inside, whatever it may cost, and any may be blinded */
+    for (int i = 0; i < s->robots; i++) node->state[i] = group[i] ? SENSES | BLINDED : OUTSIDE, inside += group[i];
     weigh(s, node, 1);
     int most = node->most;
-    while (most > 0 && !some_may_be_below(s, group, most)) most--;
+    while (most > 0 && !may_be_below(s, node, inside - most, s->q.effort)) most--;
     return most;
 }

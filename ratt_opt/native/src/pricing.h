@@ -15,9 +15,6 @@ typedef struct {
     const int64_t *order;                /* (robots) */
     int64_t blinding, unit, limit;
     int64_t effort;                      /* robots valued to decide what a group needs */
-    double *levels;                      /* (most of all + 1, robots, robots), or NULL: levels of copies of two robots */
-    int32_t *near;                       /* the same; the other robots by level */
-    uint8_t *filled;                     /* (most of all + 1) */
 } Pricing;
 
 /* A tree of cases that is written for a proof: nodes in preorder, each what it says and a number. */

@@ -32,19 +32,25 @@ static double planar_criterion(int criterion, const double *matrix) {
     return ((a + c) / 2 + sqrt(half * half + b * b)) / determinant;
 }
 
+/* Column j of L^-1, L a factor, from the diagonal on. */
+static void invert(int d, const double *factor, int j, double *column) {
+    for (int i = j; i < d; i++) {
+        const double *row = factor + i * (i + 1) / 2;
+        double rest = i == j ? 1.0 : 0.0;
+        for (int k = j; k < i; k++) rest -= row[k] * column[k];
+        column[i] = rest / row[i];
+    }
+}
+
 /* The sum of squares of the entries of L^-1, column by column. */
 double trace_of_inverse(int d, const double *matrix) {
     if (d == 2) return planar_criterion(TRACE, matrix);
     double total = 0.0, factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2], column[LARGEST_DIMENSION];
     factorise(d, matrix, factor);
-    for (int j = 0; j < d; j++)
-        for (int i = j; i < d; i++) {
-            const double *row = factor + i * (i + 1) / 2;
-            double rest = i == j ? 1.0 : 0.0;
-            for (int k = j; k < i; k++) rest -= row[k] * column[k];
-            column[i] = rest / row[i];
-            total += column[i] * column[i];
-        }
+    for (int j = 0; j < d; j++) {
+        invert(d, factor, j, column);
+        for (int i = j; i < d; i++) total += column[i] * column[i];
+    }
     return total;
 }
 
@@ -87,19 +93,13 @@ void diagonalise(int d, double matrix[][LARGEST_DIMENSION], double axes[][LARGES
 /* The largest eigenvalue of the inverse, L^-T L^-1. */
 static double largest_of_inverse(int d, const double *packed) {
     double factor[LARGEST_DIMENSION * (LARGEST_DIMENSION + 1) / 2];
-    double inverse[LARGEST_DIMENSION][LARGEST_DIMENSION], matrix[LARGEST_DIMENSION][LARGEST_DIMENSION]; /* not cleared: 64 kB */
+    double columns[LARGEST_DIMENSION][LARGEST_DIMENSION], matrix[LARGEST_DIMENSION][LARGEST_DIMENSION]; /* not cleared: 64 kB */
     factorise(d, packed, factor);
-    for (int j = 0; j < d; j++)
-        for (int i = j; i < d; i++) {
-            const double *row = factor + i * (i + 1) / 2;
-            double rest = i == j ? 1.0 : 0.0;
-            for (int k = j; k < i; k++) rest -= row[k] * inverse[k][j];
-            inverse[i][j] = rest / row[i];
-        }
+    for (int j = 0; j < d; j++) invert(d, factor, j, columns[j]);
     for (int i = 0; i < d; i++)
         for (int j = 0; j < d; j++) {
             matrix[i][j] = 0.0;
-            for (int k = i > j ? i : j; k < d; k++) matrix[i][j] += inverse[k][i] * inverse[k][j];
+            for (int k = i > j ? i : j; k < d; k++) matrix[i][j] += columns[i][k] * columns[j][k];
         }
     diagonalise(d, matrix, NULL);
     double largest = matrix[0][0];
@@ -195,10 +195,7 @@ void all_values(const Team *team, double *values, double *sums) {
     for (int64_t set = 0; set < (int64_t)1 << team->robots; set++) {
         /* Sets come as numbers: what changed are the low robots; depth counts the robots above them. */
         int depth = set ? size_of((uint64_t)set) : 0;
-        if (set) {
-            const double *own = team->information + (size_t)lowest((uint64_t)set) * width;
-            for (int t = 0; t < width; t++) sums[depth * width + t] = sums[(depth - 1) * width + t] + own[t];
-        }
+        if (set) add_information(team, sums + (depth - 1) * width, 1.0, lowest((uint64_t)set), sums + depth * width);
         values[set] = value_of(team, sums + depth * width);
     }
 }

@@ -61,11 +61,11 @@ static void mark(Visit *v, int bit, uint64_t set, const double *sums, double lea
         return;
     }
     int width = v->team->targets * entries_of(v->team), robot = bit - 1;
-    const double *own = v->team->information + (size_t)robot * width, *all = v->all + (size_t)robot * width;
+    const double *all = v->all + (size_t)robot * width;
     double *with = v->sums + (size_t)robot * width;
     for (int t = 0; t < width; t++) v->top[t] = sums[t] + all[t];
     mark(v, robot, set, sums, least, value_of(v->team, v->top));
-    for (int t = 0; t < width; t++) with[t] = sums[t] + own[t];
+    add_information(v->team, sums, 1.0, robot, with);
     mark(v, robot, set | (uint64_t)1 << robot, with, value_of(v->team, with), most);
 }
 
@@ -77,8 +77,7 @@ int mark_below(const Team *team, double threshold, int64_t first, int64_t last, 
     if (!memory) return 1;
     double *all = memory, *sums = all + (size_t)(BLOCK + 1) * width, *top = sums + (size_t)(BLOCK + 1) * width;
     double *start = top + width, *leaves = start + width;
-    for (int i = 0; i < bits; i++)
-        for (int t = 0; t < width; t++) all[(i + 1) * width + t] = all[i * width + t] + team->information[(size_t)i * width + t];
+    for (int i = 0; i < bits; i++) add_information(team, all + i * width, 1.0, i, all + (i + 1) * width);
     int count = 1 << leaf;
     for (int k = 1; k < count; k++) {
         int robot = lowest((uint64_t)k);
@@ -93,10 +92,7 @@ int mark_below(const Team *team, double threshold, int64_t first, int64_t last, 
             continue;
         }
         memcpy(start, team->prior, (size_t)width * sizeof(double));
-        for (uint64_t rest = (uint64_t)block; rest; rest &= rest - 1) {
-            const double *own = team->information + (size_t)(bits + lowest(rest)) * width;
-            for (int t = 0; t < width; t++) start[t] += own[t];
-        }
+        for (uint64_t rest = (uint64_t)block; rest; rest &= rest - 1) add_information(team, start, 1.0, bits + lowest(rest), start);
         double least = value_of(team, start);
         for (int t = 0; t < width; t++) top[t] = start[t] + all[bits * width + t];
         mark(&v, bits, (uint64_t)block << bits, start, least, value_of(team, top));

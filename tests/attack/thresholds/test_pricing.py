@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ctypes import c_uint64
-from dataclasses import replace
 from itertools import combinations
 
 import networkx as nx
@@ -19,12 +18,6 @@ from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from tests.attack.thresholds.pricing_definition import least_cost, paying_groups, reduced_cost
 from tests.strategies import OBJECTIVES, information_data, team_problem
-
-
-@pytest.fixture(params=["pairs", "single robots"])
-def params(request):
-    """Small teams go the way of large ones, too."""
-    return AttackParams() if request.param == "pairs" else AttackParams(pricing=PricingParams(paired=0))
 
 
 def question_of(threshold, prices, limit, most):
@@ -47,11 +40,11 @@ def cost_of(problem, column, prices):
 
 @pytest.mark.parametrize("nodes", [1, 10**9])
 @pytest.mark.parametrize("seed", range(20))
-def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes, params):
+def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
     team, prices = (
-        PricingProblem.of(problem.objective, plan, problem.threat, params),
+        PricingProblem.of(problem.objective, plan, problem.threat),
         (rng.uniform(0, 2, 7), rng.uniform(0.2, 2)),
     )
     threshold = problem.objective(plan) * rng.uniform(0.4, 0.9)
@@ -65,11 +58,11 @@ def test_every_group_that_costs_less_is_listed_with_what_it_needs(seed, nodes, p
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_a_group_is_found_or_there_is_none(seed, params):
+def test_a_group_is_found_or_there_is_none(seed):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 6, graph=nx.gnp_random_graph(6, (0.3, 0.5, 0.9)[seed % 3], seed=seed))
     team, threshold = (
-        PricingProblem.of(problem.objective, plan, problem.threat, params),
+        PricingProblem.of(problem.objective, plan, problem.threat),
         problem.objective(plan) * rng.uniform(0.4, 1.1),
     )
     prices = rng.uniform(0, 2, 6), rng.uniform(0.0, 2)
@@ -93,14 +86,14 @@ def test_a_group_is_found_or_there_is_none(seed, params):
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_no_set_below_a_threshold_is_larger_than_said(seed, params):
+def test_no_set_below_a_threshold_is_larger_than_said(seed):
     """Targets of one to four coordinates; small sets are decided exactly."""
     rng, dimension = np.random.default_rng(seed), 1 + seed % 4
     prior, information = information_data(rng, 7, 3, dimension)
     threat = Threat(CommunicationGraph(7, frozenset()), 2, 0)
     for objective in (cls(prior, information) for cls in OBJECTIVES.values()):
         sets = [s for k in range(8) for s in combinations(range(7), k)]
-        team = PricingProblem.of(objective, np.arange(7), threat, params)
+        team = PricingProblem.of(objective, np.arange(7), threat)
         for share in (*rng.uniform(0, 1, 3), 0.0, 1.1):
             threshold = share * objective(range(7))
             below = {s for s in sets if objective(s) < threshold}
@@ -112,8 +105,8 @@ def test_no_set_below_a_threshold_is_larger_than_said(seed, params):
 
 
 @pytest.mark.parametrize("dimension", [2, 4])
-def test_averages_alone_are_exact_for_robots_that_are_alike(dimension, params):
-    params = replace(params, pricing=replace(params.pricing, work=0))
+def test_averages_alone_are_exact_for_robots_that_are_alike(dimension):
+    params = AttackParams(pricing=PricingParams(work=0))
     prior, information = information_data(np.random.default_rng(dimension), 1, 3, dimension)
     threat = Threat(CommunicationGraph(30, frozenset()), 2, 0)
     for criterion in OBJECTIVES.values():
@@ -124,11 +117,11 @@ def test_averages_alone_are_exact_for_robots_that_are_alike(dimension, params):
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_annealed_groups_are_real_and_mostly_the_cheapest(seed, params):
+def test_annealed_groups_are_real_and_mostly_the_cheapest(seed):
     rng = np.random.default_rng(seed)
     problem, plan = team_problem(seed, 7, graph=nx.gnp_random_graph(7, 0.5, seed=seed))
     team, threshold = (
-        PricingProblem.of(problem.objective, plan, problem.threat, params),
+        PricingProblem.of(problem.objective, plan, problem.threat),
         problem.objective(plan) * rng.uniform(0.4, 0.9),
     )
     prices, found, random = (rng.uniform(0, 2, 7), rng.uniform(0.2, 2)), [], c_uint64(seed + 1)
