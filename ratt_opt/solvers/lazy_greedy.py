@@ -15,6 +15,7 @@ last time it was: information only grows, so covariances only shrink.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,17 +29,21 @@ if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.setfunctions.information import InformationObjective
 
-__all__ = ["LazyGreedy"]
+__all__ = ["LazyGreedy", "LazyGreedyParams"]
 
-LANES = 8
-"""Targets side by side in C; their number is made a multiple of it."""
-FIRST = 8
-"""Candidates of the largest bounds that are evaluated first: a large marginal spares the others."""
-CLOSE = 1e-11
-"""Marginals that differ by less, relative to the criterion before any measurement, are compared as the plain loop
-does: its values, rounded its way. It is a thousand times what either rounds off."""
-TARGETS_AT_ONCE = 1_000_000
-"""Targets times candidates between two looks at the clock: some milliseconds."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LazyGreedyParams:
+    """Numbers of lazy evaluation: when it begins, and how many candidates are looked at in one go.
+
+    ``plain`` : criteria of single targets up to which the plain loop runs; it takes some milliseconds for as many
+    ``first`` : candidates of the largest bounds that are evaluated first: a large marginal spares the others
+    ``at_once`` : targets times candidates between two looks at the clock: some milliseconds
+    """
+
+    plain: int = 200_000
+    first: int = 8
+    at_once: int = 1_000_000
 
 
 class LazyGreedy:
@@ -50,9 +55,9 @@ class LazyGreedy:
     is_open : (E,) candidates; the caller closes those that are none any more
     """
 
-    def __init__(self, objective: InformationObjective, is_open: BoolArray) -> None:
+    def __init__(self, objective: InformationObjective, is_open: BoolArray, params: LazyGreedyParams) -> None:
         assert objective.compiled_code is not None
-        self._objective, self._criterion, self._is_open = objective, objective.compiled_code, is_open
+        self._objective, self._criterion, self.is_open = objective, objective.compiled_code, is_open
         checked("is_open", is_open, np.bool_, (objective.n,))
         self._information = _by_rows(objective.information, 0.0)
         self._sums = _by_rows(objective.prior_information, 1.0)
@@ -61,7 +66,9 @@ class LazyGreedy:
         self._bounds = np.full(len(is_open), np.inf)
         self._gains = np.full(len(is_open), -np.inf)
         self._chosen: list[int] = []
-        self._close = CLOSE * objective.prior_magnitude
+        # Closer marginals are compared as the plain loop does: its values, rounded its way. A thousand times what
+        # either rounds off.
+        self._close, self._params = 1e-11 * objective.prior_magnitude, params
 
     def choose(self, budget: Budget) -> int | None:
         """The candidate of largest value beside those chosen, the lowest among equals; it is chosen.
@@ -93,13 +100,13 @@ class LazyGreedy:
             gains=address(self._gains),
         )
         self._gains[:] = -np.inf
-        bounds = np.where(self._is_open, self._bounds, -np.inf)
-        first = np.argpartition(-bounds, min(FIRST, len(bounds)) - 1)[:FIRST]
+        bounds = np.where(self.is_open, self._bounds, -np.inf)
+        first = np.argpartition(-bounds, min(self._params.first, len(bounds)) - 1)[: self._params.first]
         first = first[np.argsort(-bounds[first], kind="stable")]
-        first = first[self._is_open[first]]
+        first = first[self.is_open[first]]
         best = loops.evaluate_gains(record, address(first), len(first), self._close, -np.inf)
         bounds[first] = -np.inf
-        left, size = np.flatnonzero(bounds >= best - self._close), max(TARGETS_AT_ONCE // width, 1)
+        left, size = np.flatnonzero(bounds >= best - self._close), max(self._params.at_once // width, 1)
         for start in range(0, len(left), size):
             if budget.is_over:
                 return False
@@ -125,9 +132,9 @@ def _inverse(sums: FloatArray) -> FloatArray:
 
 
 def _by_rows(matrices: FloatArray, diagonal: float) -> FloatArray:
-    """(..., M, 2, 2) as (..., 3, W): multiples of the unit matrix come behind them, so that ``LANES`` divides W."""
+    """(..., M, 2, 2) as (..., 3, W): multiples of the unit matrix fill up the last of C's 8 lanes."""
     count = matrices.shape[-3]
-    rows = np.zeros((*matrices.shape[:-3], 3, -(-count // LANES) * LANES))
+    rows = np.zeros((*matrices.shape[:-3], 3, -(-count // 8) * 8))
     rows[..., :count] = np.swapaxes(triples(matrices), -1, -2)
     rows[..., ::2, count:] = diagonal
     return rows

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from math import inf, isinf
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt._params import check_at_least_one
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.attack.edge_cuts.smallest import bound_soon
 from ratt_opt.budget import Budget, OutOfBudget
@@ -16,13 +17,14 @@ from ratt_opt.graph.survivor_sizes import caa
 from ratt_opt.problem import Plan, Problem, check_problem
 from ratt_opt.running.progress import Step
 from ratt_opt.setfunctions.information import InformationObjective
-from ratt_opt.solvers.lazy_greedy import LazyGreedy
+from ratt_opt.solvers.lazy_greedy import LazyGreedy, LazyGreedyParams
 
 if TYPE_CHECKING:
     from ratt_opt.graph.largest_group.counting import LargestGroup
     from ratt_opt.graph.threat import Threat
 
 __all__ = [
+    "RattParams",
     "alpha_cs_in_share",
     "bait_and_greedy",
     "equivalent_sensing_attacks",
@@ -34,17 +36,45 @@ __all__ = [
     "ratt",
 ]
 
-PLAIN_WORK = 200_000
-"""Criteria of single targets that take some milliseconds in the plain loop; beyond, lazy evaluation is faster."""
 
-SIZE_SHARE, QUICK, HALF, AT_ONCE = 0.1, 2.0, 0.5, 0.3
-"""Limits of the seconds for ``n_max``: a share of the remaining ones, and seconds within which it is not cut short.
-What takes no longer than ``QUICK`` seconds is the same within any limit of twice as many, and what takes no longer than
-``AT_ONCE`` within any: RATT's plan then does not depend on it."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RattParams:
+    """Time for ``n_max`` if there is a limit: more of it finds fewer baits, and leaves less for what comes after.
+
+    ``share`` : of the remaining seconds [1]; ``quick`` : not less, up to the share ``half`` of them [s]: what takes no
+    longer is the same within any limit of twice as many; ``at_once`` : not less within any limit [s]: RATT's plan
+    then does not depend on it
+    ``first`` : share if the plan is but a search's first one [1]. On networks of 30 robots a tenth of 120 seconds went
+    there, and no plan was better for it; ``short`` : at most, if that is less than ``quick``: of one second nothing
+    was left [1]
+    ``greedy`` : how greedy choices are evaluated
+    """
+
+    share: float = 0.1
+    quick: float = 2.0
+    half: float = 0.5
+    at_once: float = 0.3
+    first: float = 0.02
+    short: float = 0.1
+    greedy: LazyGreedyParams = field(default_factory=LazyGreedyParams)
+
+    def __post_init__(self) -> None:
+        check_at_least_one(self, ("greedy.first",))
+
+    def seconds_of(self, left: float) -> float | None:
+        """Seconds for ``n_max`` of those that are left."""
+        return None if isinf(left) else max(self.share * left, min(self.quick, self.half * left), self.at_once)
+
+    def first_share(self, left: float) -> float:
+        """Share of the seconds left for the ``n_max`` of a search's first plan."""
+        return min(max(self.first, self.quick / max(left, self.quick)), self.short)
+
+
+DEFAULT = RattParams()
 
 
 @Step("the smallest largest group")
-def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -> int:
+def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None, params: RattParams = DEFAULT) -> int:
     """Return ``alpha_cs``, the sensing attacks that the link attacks are worth: ``N - n_max``, or a bound above it.
 
     Complete graphs without protected links: CAA. Other graphs: the exact ``n_max`` up to 14 robots and, if an
@@ -60,15 +90,14 @@ def equivalent_sensing_attacks(problem: Problem, budget: Budget | None = None) -
     """
     if check_problem(problem, knows_at_most=True).threat.links_alike:
         return caa(problem.n_robots, problem.alpha_c).alpha_cs
-    return problem.n_robots - largest_group_in_share(problem, budget).lower
+    return problem.n_robots - largest_group_in_share(problem, budget, params).lower
 
 
-def largest_group_in_share(problem: Problem, budget: Budget | None) -> LargestGroup:
+def largest_group_in_share(problem: Problem, budget: Budget | None, params: RattParams = DEFAULT) -> LargestGroup:
     """Bracket the smallest largest group that link attacks leave, as :func:`equivalent_sensing_attacks` needs it."""
     is_small = problem.n_robots <= LARGEST_LATTICE  # a tenth of a second: the same however busy the machine is
     left = inf if budget is None or is_small else budget.seconds_left
-    seconds = None if isinf(left) else max(SIZE_SHARE * left, min(QUICK, HALF * left), AT_ONCE)
-    return bound_soon(replace(problem.threat, alpha_s=0), Budget(seconds))
+    return bound_soon(replace(problem.threat, alpha_s=0), Budget(params.seconds_of(left)))
 
 
 def links_worth(threat: Threat, budget: Budget | None = None) -> int:
@@ -78,7 +107,9 @@ def links_worth(threat: Threat, budget: Budget | None = None) -> int:
     return threat.graph.n_robots - bound_soon(replace(threat, alpha_s=0), budget or Budget()).lower
 
 
-def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None = None) -> Plan:
+def ratt(
+    problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None = None, params: RattParams = DEFAULT
+) -> Plan:
     """Plan against ``alpha = alpha_s + alpha_cs`` sensing attacks.
 
     The ``alpha`` robots with the largest individual values get their individually best
@@ -90,6 +121,7 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
     alpha_cs : sensing attacks that the link attacks are worth, if known; else asked for
     budget : an outer search's budget: if ``alpha_cs`` takes long it is a bound found in a part of its seconds, and
         once it is spent, the robots left get their individually best element too
+    params : which part of its seconds, and how greedy choices are evaluated
 
     Returns
     -------
@@ -97,25 +129,23 @@ def ratt(problem: Problem, *, alpha_cs: int | None = None, budget: Budget | None
 
     Source: ratt.tex, Algorithm 1 (RATT); guarantee in Theorem 1, evaluations in Theorem 2.
     """
-    known = equivalent_sensing_attacks(problem, budget) if alpha_cs is None else alpha_cs
-    return replace(bait_and_greedy(problem, problem.alpha_s + known, budget), alpha_cs=known)
+    known = equivalent_sensing_attacks(problem, budget, params) if alpha_cs is None else alpha_cs
+    planned = bait_and_greedy(problem, problem.alpha_s + known, budget, params=params.greedy)
+    return replace(planned, alpha_cs=known)
 
 
-FIRST_SHARE, SHORT_SHARE = 0.02, 0.1
-"""Share of a search's time for ``n_max``, and the share if that is less than two seconds.
-On networks of 30 robots a tenth of 120 seconds went there and no plan was better for it; of one second nothing was
-left. If no time is set nothing is cut short."""
-
-
-def alpha_cs_in_share(problem: Problem, budget: Budget) -> int:
+def alpha_cs_in_share(problem: Problem, budget: Budget, params: RattParams = DEFAULT) -> int:
     """``alpha_cs`` as far as it is found in a share of a search's time: RATT's plan is but its first one."""
-    seconds = budget.seconds_left
-    return links_worth(problem.threat, budget.part(min(max(FIRST_SHARE, QUICK / max(seconds, QUICK)), SHORT_SHARE)))
+    return links_worth(problem.threat, budget.part(params.first_share(budget.seconds_left)))
 
 
 @Step("planning")
 def bait_and_greedy(
-    problem: Problem, alpha: int, budget: Budget | None = None, single: FloatArray | None = None
+    problem: Problem,
+    alpha: int,
+    budget: Budget | None = None,
+    single: FloatArray | None = None,
+    params: LazyGreedyParams = DEFAULT.greedy,
 ) -> Plan:
     """Algorithm 1 for a given number ``alpha >= 0`` of sensing attacks (lines 3 to 18), as far as the budget lasts.
 
@@ -131,7 +161,8 @@ def bait_and_greedy(
     bait = np.sort(order[:alpha])
     elements = best.copy()
     greedy_robots = np.setdiff1d(np.arange(problem.n_robots), bait)
-    evaluations = problem.objective.n + _greedy(problem, greedy_robots, single, elements, budget or Budget())
+    budget = budget or Budget()
+    evaluations = problem.objective.n + _greedy(problem, greedy_robots, single, elements, budget, params)
     return Plan(elements=readonly(elements), evaluations=evaluations, bait=tuple(int(i) for i in bait))
 
 
@@ -161,7 +192,9 @@ def _choose_few(problem: Problem, alpha: int, budget: Budget, single: FloatArray
     return Plan(elements=readonly(elements), evaluations=evaluations, bait=tuple(int(i) for i in bait))
 
 
-def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: IntArray, budget: Budget) -> int:
+def _greedy(  # noqa: PLR0917
+    problem: Problem, robots: IntArray, single: FloatArray, elements: IntArray, budget: Budget, params: LazyGreedyParams
+) -> int:
     """Fill ``elements`` of ``robots`` by the standard greedy algorithm; return the evaluations it took.
 
     The first round needs no evaluation: its values are the individual ones.
@@ -170,8 +203,9 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
     objective = problem.objective
     if isinstance(objective, InformationObjective) and objective.compiled_code is not None and objective.dimension == 2:
         rounds = len(robots) - 1
-        if not budget.is_over and rounds * len(candidates) / 2 * objective.n_targets > PLAIN_WORK:
-            return _lazy_greedy(problem, objective, candidates, elements, budget)
+        if not budget.is_over and rounds * len(candidates) / 2 * objective.n_targets > params.plain:
+            greedy = LazyGreedy(objective, np.isin(np.arange(objective.n), candidates), params)
+            return _lazy_greedy(problem, greedy, elements, budget)
     chosen = np.array([], dtype=np.int64)
     evaluations = 0
     while len(candidates) and not budget.is_over:
@@ -190,13 +224,9 @@ def _greedy(problem: Problem, robots: IntArray, single: FloatArray, elements: In
     return evaluations
 
 
-def _lazy_greedy(
-    problem: Problem, objective: InformationObjective, candidates: IntArray, elements: IntArray, budget: Budget
-) -> int:
+def _lazy_greedy(problem: Problem, greedy: LazyGreedy, elements: IntArray, budget: Budget) -> int:
     """Make the greedy choices with few evaluations; the returned number is that of the plain algorithm."""
-    is_open = np.zeros(objective.n, dtype=np.bool_)
-    is_open[candidates] = True
-    greedy, evaluations = LazyGreedy(objective, is_open), -len(candidates)
+    is_open, evaluations = greedy.is_open, -int(greedy.is_open.sum())
     while (left := int(is_open.sum())) > 0 and not budget.is_over:
         pick = greedy.choose(budget)
         if pick is None:

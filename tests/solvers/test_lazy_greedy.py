@@ -7,8 +7,7 @@ import pytest
 
 from ratt_opt import InputError
 from ratt_opt.budget import Budget
-from ratt_opt.solvers import lazy_greedy
-from ratt_opt.solvers.lazy_greedy import LazyGreedy
+from ratt_opt.solvers.lazy_greedy import LazyGreedy, LazyGreedyParams
 from tests.strategies import OBJECTIVES, information_data
 
 
@@ -23,12 +22,12 @@ def random_objective(name, seed):
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(12))
-def test_gains_are_marginals_and_never_exceed_earlier_bounds(name, seed, monkeypatch):
+def test_gains_are_marginals_and_never_exceed_earlier_bounds(name, seed):
     """All candidates at once, and one after the other."""
-    monkeypatch.setattr(lazy_greedy, "TARGETS_AT_ONCE", [10**6, 1][seed % 2])
     f = random_objective(name, seed)
     is_open, chosen = np.ones(f.n, dtype=np.bool_), []
-    greedy, scale = LazyGreedy(f, is_open), f.prior_magnitude
+    params = LazyGreedyParams(at_once=[10**6, 1][seed % 2], first=[8, 8, 1, 1][seed % 4])
+    greedy, scale = LazyGreedy(f, is_open, params), f.prior_magnitude
     while is_open.any():
         marginals = np.array([f([*chosen, e]) - f(chosen) if is_open[e] else -np.inf for e in range(f.n)])
         assert np.all(marginals[is_open] <= greedy._bounds[is_open] + 1e-11 * scale)
@@ -50,7 +49,7 @@ def test_bounds_spare_most_evaluations():
     for name in ("trace", "logdet"):
         f = OBJECTIVES[name](*information_data(rng, 200, 5))
         is_open, evaluated = np.ones(200, dtype=np.bool_), []
-        greedy = LazyGreedy(f, is_open)
+        greedy = LazyGreedy(f, is_open, LazyGreedyParams())
         for _ in range(10):
             is_open[greedy.choose(Budget())] = False
             evaluated.append(int(np.isfinite(greedy._gains).sum()))
@@ -60,7 +59,7 @@ def test_bounds_spare_most_evaluations():
 
 def test_nothing_is_chosen_when_the_budget_is_over():
     f = OBJECTIVES["trace"](*information_data(np.random.default_rng(0), 20, 2))
-    greedy = LazyGreedy(f, np.ones(20, dtype=np.bool_))
+    greedy = LazyGreedy(f, np.ones(20, dtype=np.bool_), LazyGreedyParams())
     assert greedy.choose(Budget(0)) is None
     assert greedy.choose(Budget()) == int(np.argmax(f.singletons()))
 
@@ -68,7 +67,7 @@ def test_nothing_is_chosen_when_the_budget_is_over():
 def test_what_c_may_not_read_is_refused():
     f = OBJECTIVES["trace"](*information_data(np.random.default_rng(0), 6, 2))
     good = np.ones(6, dtype=np.bool_)
-    LazyGreedy(f, good)
+    LazyGreedy(f, good, LazyGreedyParams())
     for bad in (good.astype(np.int64), good.tolist(), good[:5], good[:, None], np.ones(12, dtype=np.bool_)[::2]):
         with pytest.raises(InputError):
-            LazyGreedy(f, bad)
+            LazyGreedy(f, bad, LazyGreedyParams())

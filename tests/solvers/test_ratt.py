@@ -27,7 +27,9 @@ from ratt_opt import (
     solve_maxmin,
 )
 from ratt_opt.budget import Budget
-from tests.solvers.maxmin.engine import LAZY, NO_PLANS_LISTED
+from ratt_opt.solvers.lazy_greedy import LazyGreedyParams
+from ratt_opt.solvers.ratt import RattParams
+from tests.solvers.maxmin.engine import NO_PLANS_LISTED
 from tests.strategies import OBJECTIVES, information_data, random_problem, table_problems
 from tests.ways import go
 
@@ -142,7 +144,7 @@ def test_random_plan_is_reproducible_and_uses_every_element() -> None:
 
 @pytest.mark.parametrize("name", OBJECTIVES)
 @pytest.mark.parametrize("seed", range(12))
-def test_lazy_evaluation_changes_nothing(name: str, seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lazy_evaluation_changes_nothing(name: str, seed: int) -> None:
     """Equal elements and robots, rank one, useless and overwhelming information included."""
     rng = np.random.default_rng(seed)
     prior, information = information_data(rng, 24, 5)
@@ -151,9 +153,20 @@ def test_lazy_evaluation_changes_nothing(name: str, seed: int, monkeypatch: pyte
     weights = rng.uniform(0.2, 3, 5) if seed % 2 else None
     problem = Problem(OBJECTIVES[name](prior, information, weights), np.repeat(np.arange(8), 3), None, seed % 4, 0)
     plain = ratt(problem)
-    go(monkeypatch, LAZY)
-    lazy = ratt(problem)
-    assert lazy == plain
+    lazy = LazyGreedyParams(plain=-1, first=[8, 1][seed % 2], at_once=[10**6, 0][seed // 2 % 2])
+    assert ratt(problem, params=RattParams(greedy=lazy)) == plain
+
+
+def test_the_size_of_groups_takes_no_more_than_its_share() -> None:
+    params, seconds = RattParams(), np.geomspace(1e-3, 1e4, 60)
+    asked = [params.seconds_of(left) or 0.0 for left in seconds]
+    assert asked == sorted(asked)
+    assert all(got in {0.3, 2.0, 0.5 * left, 0.1 * left} for got, left in zip(asked, seconds, strict=True))
+    assert asked[0] == 0.3
+    assert params.seconds_of(np.inf) is None
+    shares = [params.first_share(left) for left in seconds]
+    assert shares == sorted(shares, reverse=True)
+    assert (shares[0], shares[-1], params.first_share(np.inf), params.first_share(50.0)) == (0.1, 0.02, 0.02, 0.04)
 
 
 @pytest.mark.parametrize("n_robots", [13, 65])

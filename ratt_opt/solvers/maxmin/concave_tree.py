@@ -15,7 +15,7 @@ import numpy as np
 from ratt_opt.bounds.cuts import largest_of_each
 from ratt_opt.budget import OutOfBudget, Stop
 from ratt_opt.search.branch_and_bound import divide_nodes
-from ratt_opt.solvers.maxmin.division import NEGLIGIBLE, Division, WinnerDivision
+from ratt_opt.solvers.maxmin.division import Division, WinnerDivision
 from ratt_opt.solvers.maxmin.elements import with_choice
 from ratt_opt.solvers.maxmin.frontier import Backjumps, Frontier
 from ratt_opt.solvers.maxmin.proof import Leaf, TreeNode, upper_proof
@@ -155,7 +155,7 @@ class ConcaveTree:
 
         Returns the leaf of these multipliers, its bound and its combined scores (E,).
         """
-        active = relaxed.duals > NEGLIGIBLE
+        active = relaxed.is_active
         if not active.any():
             return node.leaf, *self.cuts.leaf_bound(node.leaf, node.choices)
         leaf = Leaf(cuts=tuple(relaxed.cuts[active].tolist()), weights=tuple(relaxed.duals[active].tolist()))

@@ -22,12 +22,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
     from ratt_opt.solvers.maxmin.winners import ClosedGroup, Winners
 
-__all__ = ["NEGLIGIBLE", "Division", "WinnerDivision"]
-
-NEGLIGIBLE = 1e-12
-"""Multipliers below this are left out of a leaf."""
-CUT_OFF = 1e-9
-"""Share of the relaxed level by which an undecided winner has to be lower to be divided on."""
+__all__ = ["Division", "WinnerDivision"]
 
 
 class WinnerDivision:
@@ -119,7 +114,7 @@ class Division:
 
     def _by_winner(self, node: TreeNode, relaxed: RelaxedPlan | None) -> list[TreeNode]:
         """Children by the winner of an outcome; none if no undecided one would cut the relaxed plan off."""
-        level = np.inf if relaxed is None else relaxed.level - CUT_OFF * abs(relaxed.level)
+        level = np.inf if relaxed is None else relaxed.level - 1e-9 * abs(relaxed.level)  # lower by more than rounding
         best = self.frontier.rule.plans.best
         of_robot = self.task.objective.information[best] if relaxed is None else self.task.mixed(relaxed.selection)
         outcome = self.by_winner.undecided(node, of_robot, level)
@@ -158,7 +153,7 @@ class Division:
             return open_robots[0], (choice[:1], choice[1:])
         if self.cuts.rows is not None:
             return _least_decided(node, relaxed, open_robots)
-        active = relaxed.duals > NEGLIGIBLE
+        active = relaxed.is_active
         scores = self.cuts.scores(relaxed.cuts[active])
         losses = rounding_losses(node.choices, relaxed.selection, scores)
         i = int(losses.argmax())

@@ -29,16 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Backjumps", "ClosingRule", "Frontier"]
 
-WIDEST_GAP = 0.5
-"""Relative gaps count as at most this if they say above which level a plan would have to be."""
-
-MARGINS = 8
-"""Roundings of a value that a bound may stay above a level it cannot be told from: tangents carry margins for their own
-rounding, of some such. Half of what a result counts as closed. With 1 a team whose optimum is 0 was divided on
-the winners of dozens of outcomes, without end."""
-SPACING_MARGIN = 1e-9
-"""Relative distance that bounds keep from the next value that a plan can have."""
-
 
 class ClosingRule:
     """A bound closes a node if no plan below it can be better than the best known, by more than the gap.
@@ -49,7 +39,9 @@ class ClosingRule:
 
     def __init__(self, plans: Candidates, gap: float, spacing: ValueSpacing | None = None) -> None:
         self.plans, self.gap, self.spacing = plans, gap, spacing
-        self._rounding = MARGINS * plans.pool.objective.rounding
+        # A bound may stay so much above a level that it cannot be told from: tangents carry margins of some roundings.
+        # Half of what a result counts as closed. With one of them a team whose optimum is 0 was divided without end.
+        self._rounding = 8 * plans.pool.objective.rounding
 
     @property
     def level(self) -> float:
@@ -59,7 +51,7 @@ class ClosingRule:
     @property
     def better(self) -> float:
         """The level that a plan has to exceed to be better by more than the gap."""
-        better = (self.level + self._rounding) / (1 - min(self.gap, WIDEST_GAP))
+        better = (self.level + self._rounding) / (1 - min(self.gap, 0.5))  # a gap of 1 has no such level
         return max(better, self._between)
 
     @property
@@ -67,8 +59,9 @@ class ClosingRule:
         """Bounds up to this close, as no plan has a value between it and one that is not better."""
         if self.spacing is None:
             return -np.inf
-        largest = self.spacing.below(self.spacing.next_above(self.level) * (1 - SPACING_MARGIN))
-        return self.spacing.next_above(largest) * (1 - SPACING_MARGIN) if self._missing(largest) >= 0 else -np.inf
+        nearly = 1 - 1e-9  # of the next value that a plan can have: rounding must not reach it
+        largest = self.spacing.below(self.spacing.next_above(self.level) * nearly)
+        return self.spacing.next_above(largest) * nearly if self._missing(largest) >= 0 else -np.inf
 
     def closes(self, bound: float) -> bool:
         """Tell whether a bound is low enough to close a node."""

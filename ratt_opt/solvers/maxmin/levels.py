@@ -13,7 +13,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ratt_opt.attack.team import LARGEST_DIMENSION
 from ratt_opt.budget import Stop
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
+from ratt_opt.setfunctions.criteria.trace import TraceObjective
+from ratt_opt.solvers.maxmin.bound_stage import BoundStage, TurnShare
 from ratt_opt.solvers.maxmin.walk import Walk
 
 if TYPE_CHECKING:
@@ -26,7 +30,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.time_slices import TimeSlices, Turn
 
-__all__ = ["LevelSearch", "Outcome", "SearchByLevels"]
+__all__ = ["DepthStage", "LevelSearch", "Outcome", "SearchByLevels"]
 
 
 class Outcome(IntEnum):
@@ -203,3 +207,29 @@ class SearchByLevels(ABC):
     def _lowest(self) -> float:
         """The upper end by this search or by others."""
         return min(self.upper, self._others)
+
+
+class DepthStage(BoundStage):
+    """Stage that searches in depth, level by level."""
+
+    kind = "in depth"
+
+    def applies(self, known: Known) -> bool:
+        """Robots see few targets, all may choose, and the criterion is trace or log-det, of up to 64 dimensions."""
+        objective = known.task.objective
+        is_sum = objective.compiled_code in {TraceObjective.native_kernel, LogDetObjective.native_kernel}
+        if known.task.problem.at_most is not None or not is_sum or objective.dimension > LARGEST_DIMENSION:
+            return False
+        seen = np.trace(objective.information, axis1=-2, axis2=-1) > 0
+        return bool(seen.mean() <= 1 - known.task.params.depth.unseen) and self.fits(known)
+
+    @abstractmethod
+    def fits(self, known: Known) -> bool:
+        """Tell whether the search can hold the team's elements."""
+
+    def share(self, known: Known) -> TurnShare:
+        """Return many nodes for each of the trees', fewer beside rows after turns in vain."""
+        params = known.task.params.depth
+        if known.rows_from == 0:
+            return TurnShare(first=params.first, most=params.most, in_vain=params.in_vain)
+        return TurnShare(first=params.most, most=params.most)

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.native.loops import loops
+from ratt_opt.setfunctions.criteria.logdet import LogDetObjective
 from ratt_opt.setfunctions.rounding_errors import UNIT
 from ratt_opt.solvers.maxmin.elements import PackedElements, padded
-from ratt_opt.solvers.maxmin.levels import LevelSearch, Outcome, SearchByLevels
-from ratt_opt.solvers.maxmin.marginal_tables import BRANCHED, Attacks, Choosers, Gains, Path
+from ratt_opt.solvers.maxmin.levels import DepthStage, LevelSearch, Outcome, SearchByLevels
+from ratt_opt.solvers.maxmin.marginal_tables import BRANCHED, MOST_ROBOTS, Attacks, Choosers, Gains, Path
 from ratt_opt.solvers.maxmin.proof import ElementBranch, MarginalLeaf, UpperProof
 
 if TYPE_CHECKING:
@@ -26,12 +27,10 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 
-__all__ = ["MarginalSearch", "dive", "raised_information"]
+__all__ = ["MarginalGainsStage", "MarginalSearch", "dive", "raised_information"]
 
 ROUNDINGS = 4
 """Evaluation errors by which values of one plan, computed in two ways, may differ, and both from the exact one."""
-EIGENVALUES = 8
-"""Roundings, of the matrices' sizes and for each dimension, by which computed eigenvalues may be off."""
 
 
 def raised_information(elements: Elements) -> FloatArray:
@@ -48,7 +47,8 @@ def raised_information(elements: Elements) -> FloatArray:
         others = np.concatenate([whole[list(members)], np.zeros((1, *whole.shape[1:]))])
         apart = information[k] - others
         sizes = np.linalg.norm(information[k], axis=(-2, -1)) + np.linalg.norm(others, axis=(-2, -1))
-        missing = EIGENVALUES * len(identity) * UNIT * sizes - np.linalg.eigvalsh(apart)[..., 0]
+        error = 8 * len(identity) * UNIT * sizes  # of eigenvalues as computed
+        missing = error - np.linalg.eigvalsh(apart)[..., 0]
         missing[~apart.any(axis=(-2, -1))] = 0.0
         added[k] = np.maximum(missing, 0.0).max(axis=0)
     return np.asarray(information + added[..., None, None] * identity)
@@ -197,3 +197,20 @@ class MarginalSearch(SearchByLevels):
         if (bound := search.level + self._margin) < self.upper:
             self.upper = bound
             self._proof = MarginalProof(self._elements, self._team, self._known.incumbent.pool, search.record)
+
+
+class MarginalGainsStage(DepthStage):
+    """Stage that bounds what robots that have not chosen yet can still gain."""
+
+    name = "marginal gains"
+
+    def fits(self, known: Known) -> bool:
+        """Tell whether gains diminish, as those of log-determinants do, and there are not too many plans."""
+        if known.task.objective.compiled_code != LogDetObjective.native_kernel:
+            return False
+        sizes = [float(len(choice)) for choice in known.elements.problem.choices]
+        return len(sizes) <= MOST_ROBOTS and bool(np.prod(sizes) <= known.task.params.marginals.plans)
+
+    def begin(self, known: Known) -> MarginalSearch:
+        """Begin at the level of the best plan."""
+        return MarginalSearch(known, known.elements)

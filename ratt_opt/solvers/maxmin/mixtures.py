@@ -28,8 +28,10 @@ if TYPE_CHECKING:
 
 __all__ = ["divide_by_scores", "divide_elements", "mixing_gains", "rounding_losses"]
 
-SUPPORT = 1e-6
-"""Elements with less weight are not part of a mixture."""
+
+def _is_mixed(weights: FloatArray) -> BoolArray:
+    """Test which elements are part of a mixture: not nearly all or nothing of their robot's choice."""
+    return (weights > 1e-6) & (weights < 1 - 1e-6)
 
 
 def rounding_losses(choices: Sequence[IntArray], selection: FloatArray, scores: FloatArray) -> FloatArray:
@@ -41,7 +43,7 @@ def rounding_losses(choices: Sequence[IntArray], selection: FloatArray, scores: 
     if not scores.shape[1]:
         return losses
     for i, choice in enumerate(choices):
-        mixed = choice[(selection[choice] > SUPPORT) & (selection[choice] < 1 - SUPPORT)]
+        mixed = choice[_is_mixed(selection[choice])]
         if len(mixed) > 1:
             mean = selection[mixed] @ scores[mixed] / selection[mixed].sum()
             losses[i] = (mean - scores[mixed]).max(axis=1).min()
@@ -77,7 +79,7 @@ def mixing_gains(
     objective, gains = problem.information_objective, np.zeros(problem.n_robots)
     if not len(weights):
         return gains
-    support = np.flatnonzero((selection > SUPPORT) & (selection < 1 - SUPPORT))
+    support = np.flatnonzero(_is_mixed(selection))
     owners = problem.robot[support]
     before = objective.cut_values(points, targets)
     for i in np.unique(owners).tolist():

@@ -28,11 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["CutRounds", "RelaxedPlan"]
 
-VIOLATED = 1e-10
-"""Share of the relaxed level by which a cut has to be lower to count as violated."""
-ROUNDING = 1e-12
-"""Weights of elements up to this are the simplex method's rounding."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RelaxedPlan:
@@ -42,6 +37,16 @@ class RelaxedPlan:
     cuts: IntArray
     duals: FloatArray
     level: float
+
+    @property
+    def is_active(self) -> BoolArray:
+        """(K,) which cuts have multipliers beyond the simplex method's rounding: others are left out of a leaf."""
+        return self.duals > 1e-12
+
+    @property
+    def violated(self) -> float:
+        """Level below which a cut counts as violated: lower by more than rounding."""
+        return self.level - 1e-10 * abs(self.level)
 
     def rounded(self, choices: Choices, limit: ChoiceLimit | None = None) -> IntArray:
         """(N,) the element of largest weight of each robot; beyond the limit, robots of small weights are idle."""
@@ -147,7 +152,7 @@ class NodeProgram:
         for cut, dual in zip(self.in_use, duals, strict=True):
             self._idle[cut] = 0 if dual > 0 else self._idle[cut] + 1
         columns = claim.x[: self._n]
-        selection = np.where(columns > ROUNDING, np.minimum(columns, self._most), 0.0)
+        selection = np.where(columns > 1e-12, np.minimum(columns, self._most), 0.0)  # others are its rounding
         cuts, level = np.array(self.in_use, dtype=np.int64), float(claim.x[self._n])
         return RelaxedPlan(selection=selection, cuts=cuts, duals=duals, level=level)
 
@@ -211,7 +216,7 @@ class CutRounds:
 
     def separate(self, node: TreeNode, relaxed: RelaxedPlan) -> bool:
         """Use cuts that the relaxed plan violates; False when no stored, known or new outcome has one."""
-        level = relaxed.level - VIOLATED * abs(relaxed.level)
+        level = relaxed.violated
         of_robot = self.task.mixed(relaxed.selection)
         if self.cuts.rows is not None:
             return self._separate_by_rows(self.cuts.rows, node, relaxed.selection, (of_robot, level))
@@ -250,7 +255,7 @@ class CutRounds:
         """Use rows of hulls at the relaxed plan, if there are rows; whether they cut it off."""
         if (rows := self.cuts.rows) is None:
             return False
-        level, selection = relaxed.level - VIOLATED * abs(relaxed.level), relaxed.selection
+        level, selection = relaxed.violated, relaxed.selection
         of_robot = self.task.mixed(selection)
         groups = rows.at(selection, of_robot)
         binding = self.cuts.groups[relaxed.cuts[np.argsort(-relaxed.duals, kind="stable")]]

@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ratt_opt.budget import Stop
+from ratt_opt.solvers.maxmin.bound_stage import BoundStage, TurnShare
 from ratt_opt.solvers.maxmin.concave_tree import ConcaveTree
 from ratt_opt.solvers.maxmin.time_slices import TimeSlicesUntil
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.time_slices import Progress, Turn
 
-__all__ = ["RestartedSearch"]
+__all__ = ["ConcaveTreesStage", "RestartedSearch"]
 
 
 class RestartedSearch:
@@ -80,3 +81,19 @@ class RestartedSearch:
         self._best = self._lowest()
         self._until = self._known.incumbent.budget.nodes + int(self._tree_nodes)
         self._current = ConcaveTree(self._known, depth_first=True)
+
+
+class ConcaveTreesStage(BoundStage):
+    """Stage that divides nodes bounded by concave relaxations; it works for every criterion."""
+
+    name = "concave trees"
+    kind = "trees"
+
+    def share(self, known: Known) -> TurnShare:
+        """Return the nodes of the last slice; at first the root alone."""
+        factor = 1 / known.task.params.depth.growth
+        return TurnShare(first=factor, most=factor, at_first=1)
+
+    def begin(self, known: Known) -> RestartedSearch:
+        """Begin the first tree."""
+        return RestartedSearch(known)

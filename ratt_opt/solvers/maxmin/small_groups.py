@@ -30,9 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SmallGroups", "SmallTables"]
 
-ROUNDING = 1e-11
-"""Relative: values so little below a level are not counted on to be proved below it."""
-
 
 class _Domains:
     """The choices of a node, with a number for each robot's: equal numbers are equal choices.
@@ -128,7 +125,7 @@ class SmallGroups:
         if self.pool.complete:
             return node
         self._tables.grow()
-        level, before = better - ROUNDING * abs(better), None
+        level, before = better - 1e-11 * abs(better), None  # values closer to it may not be proved to be below
         while node is not before:
             before, domains = node, self._domains(node)
             for outcome in range(len(self.pool)):

@@ -24,9 +24,9 @@ from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.monotone_bound import monotone_bound
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import or_default
+from ratt_opt.solvers.maxmin.plan_stage import LowerEnd, PlanPhase, run_plan_stages
 from ratt_opt.solvers.maxmin.stages import schedule
 from ratt_opt.solvers.maxmin.stages.first_plans import outlast_first_plans
-from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, PlanPhase, run_plan_stages
 from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.problem import Problem
+    from ratt_opt.solvers.maxmin.bound_stage import BoundStage
     from ratt_opt.solvers.maxmin.params import MaxMinParams
-    from ratt_opt.solvers.maxmin.stages.bound_stage import BoundStage
     from ratt_opt.solvers.maxmin.time_slices import Progress
 
 __all__ = [
@@ -50,9 +50,6 @@ __all__ = [
     "solve_in_coordinates",
     "solve_maxmin",
 ]
-
-ROUNDING = 1e-9
-"""Relative width of a bracket that counts as closed."""
 
 
 @interruptible
@@ -220,13 +217,14 @@ def _result(
         known = monotone_bound(problem, Attack() if proved.worst_case is None else proved.worst_case.attack)
         stage, upper, proof = "monotonicity", known.upper, known.proof
     rounding = 16 * problem.objective.rounding  # of values, of tangents, and of the proof of the plan
-    width = ROUNDING * abs(lower) + rounding
+    closed = 1e-9  # relative width of a bracket that counts as closed
+    width = closed * abs(lower) + rounding
     if not upper >= lower - width:
         raise ProofError(f"{stage}: no plan is worth more than {upper:.10g}, but one is worth {lower:.10g} at least")
     upper = max(upper, lower)
     if upper - lower <= width:
         stop = Stop.CLOSED
-    elif stop is Stop.GAP and upper - lower > max(gap, ROUNDING) * abs(upper) * (1 + ROUNDING) + rounding:
+    elif stop is Stop.GAP and upper - lower > max(gap, closed) * abs(upper) * (1 + closed) + rounding:
         stop = proved.unproved_stop  # no better plan is left, but this one's worst case is not proved
     return MaxMinResult(
         elements=readonly(proved.elements),

@@ -18,9 +18,9 @@ from ratt_opt.solvers.maxmin.time_slices import Turn
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from ratt_opt.solvers.maxmin.bound_stage import BoundSearch, BoundStage, TurnShare
     from ratt_opt.solvers.maxmin.known import Known
     from ratt_opt.solvers.maxmin.proof import UpperProof
-    from ratt_opt.solvers.maxmin.stages.bound_stage import BoundSearch, BoundStage, TurnShare
     from ratt_opt.solvers.maxmin.time_slices import Progress, TimeSlices
 
 __all__ = ["UpperBoundPortfolio"]

@@ -12,6 +12,7 @@ One plan above the level ends it without a proof.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,7 +32,12 @@ if TYPE_CHECKING:
 
 __all__ = ["ClosedGroup", "GroupProofs", "Winners", "close_group"]
 
-UNKNOWN, UNDECIDED = -2, -1
+
+class Undecided(IntEnum):
+    """Mark in place of a winner: not asked yet, or not decided for all plans."""
+
+    UNKNOWN = -2
+    OPEN = -1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -191,7 +197,7 @@ class Winners:
         if outcome in node.winners:
             return node.winners[outcome]
         self._grow()
-        if self._winner[outcome] == UNKNOWN:
+        if self._winner[outcome] == Undecided.UNKNOWN:
             self._decide(outcome)
         winner = int(self._winner[outcome])
         return winner if winner >= 0 else None
@@ -199,7 +205,7 @@ class Winners:
     def _grow(self) -> None:
         missing = len(self.pool) - len(self._winner)
         if missing > 0:
-            self._winner = np.concatenate([self._winner, np.full(missing, UNKNOWN)])
+            self._winner = np.concatenate([self._winner, np.full(missing, Undecided.UNKNOWN)])
 
     def _decide(self, outcome: int) -> None:
         """Close all groups of an outcome but the strongest by bounds that hold for every plan, if that works."""
@@ -212,7 +218,7 @@ class Winners:
                 continue
             proof = self.proofs.find(group, self._everything)
             if proof is None:
-                self._winner[outcome] = UNDECIDED
+                self._winner[outcome] = Undecided.OPEN
                 return
             closed.append((group, proof))
         if closed:
@@ -258,7 +264,7 @@ class Winners:
                 frontier.finish(leaf)
             parts.append((self.pool.groups[group], node))
         self._reopened[outcome] = tuple(parts)
-        self._winner[outcome] = UNDECIDED
+        self._winner[outcome] = Undecided.OPEN
         del self._closed[outcome]
         self._bound_closed()
 

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 from ratt_opt import Attack, MaxMinParams, Stop
 from ratt_opt.solvers import exhaustive, ratt
 from ratt_opt.solvers.maxmin import adversary, solve
+from ratt_opt.solvers.maxmin.covers.cover_search import CoversStage
+from ratt_opt.solvers.maxmin.marginal_search import MarginalGainsStage
 from ratt_opt.solvers.maxmin.proof import MarginalLeaf
-from ratt_opt.solvers.maxmin.restarts import RestartedSearch
+from ratt_opt.solvers.maxmin.restarts import ConcaveTreesStage, RestartedSearch
 from ratt_opt.solvers.maxmin.stages import schedule
-from ratt_opt.solvers.maxmin.stages.concave_trees import ConcaveTreesStage
-from ratt_opt.solvers.maxmin.stages.covers import CoversStage
-from ratt_opt.solvers.maxmin.stages.marginal_gains import MarginalGainsStage
 
 if TYPE_CHECKING:
     import pytest
@@ -29,7 +28,6 @@ __all__ = [
     "BLIND",
     "COVERS_ALONE",
     "EXCHANGED",
-    "LAZY",
     "LISTED",
     "MARGINALS_ALONE",
     "NO_GROUPS",
@@ -57,8 +55,6 @@ def _interrupted(*_: object) -> None:
 
 TRACE_INTERRUPTED: Way = {(solve, "_solve_as_trace"): _interrupted}
 """The search of coverage as a trace is interrupted as it begins."""
-LAZY: Way = {(ratt, "PLAIN_WORK"): -1}
-"""Greedy choices are bounded by earlier marginal gains, however few they are."""
 UNLISTED: Way = {(MaxMinParams, "outcomes.robots"): 0}
 """Outcomes are not listed beforehand, as for large teams."""
 LISTED: Way = {(MaxMinParams, "outcomes.robots"): 12}

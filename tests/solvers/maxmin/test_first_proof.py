@@ -26,7 +26,7 @@ from ratt_opt.solvers.maxmin.adversary import Adversary
 from ratt_opt.solvers.maxmin.incumbent import Incumbent
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import IncumbentParams
-from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd, PlanPhase, run_plan_stages
+from ratt_opt.solvers.maxmin.plan_stage import LowerEnd, PlanPhase, run_plan_stages
 from ratt_opt.solvers.maxmin.stages.schedule import PLAN_STAGES
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ import pytest
 
 from ratt_opt import exhaustive_optimum, solve_maxmin
 from ratt_opt.attack.staging import without_stages
+from ratt_opt.solvers.maxmin.plan_stage import PlanPhase, PlanStage
 from ratt_opt.solvers.maxmin.stages import schedule
-from ratt_opt.solvers.maxmin.stages.plan_stage import PlanPhase, PlanStage
 from tests.solvers.maxmin.engine import UNLISTED
 from tests.strategies import small_team
 from tests.ways import go

@@ -19,7 +19,7 @@ from tests.ways import go
 
 if TYPE_CHECKING:
     from ratt_opt.budget import Budget
-    from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd
+    from ratt_opt.solvers.maxmin.plan_stage import LowerEnd
 
 TOO_MUCH = 1.3
 """Times what it is worth that a plan seems to be worth until the search ends for the first time."""

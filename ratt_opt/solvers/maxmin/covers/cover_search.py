@@ -14,10 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.highs import LinearProgram, rows_of
-from ratt_opt.solvers.maxmin.covers.dive import BY_COVER, BY_SUM, CoverSums, Dive, DiveProof
+from ratt_opt.solvers.maxmin.covers.choices import MOST_CHOICES
+from ratt_opt.solvers.maxmin.covers.dive import CoverSums, Dive, DiveProof, Reason
 from ratt_opt.solvers.maxmin.covers.pool import cover_bound
 from ratt_opt.solvers.maxmin.covers.separation import Separation
-from ratt_opt.solvers.maxmin.levels import LevelSearch, SearchByLevels
+from ratt_opt.solvers.maxmin.levels import DepthStage, LevelSearch, SearchByLevels
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.proof import UpperProof
     from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 
-__all__ = ["CoverSearch"]
+__all__ = ["CoverSearch", "CoversStage"]
 
 
 class Relaxed:
@@ -223,8 +224,8 @@ class CoverSearch(SearchByLevels):
         """Take what a search proved; its covers are stated now, since what numbers them changes."""
         assert isinstance(search, CoverLevelSearch)
         nodes, pool = search.dive.record.nodes, self._separation.pool
-        by_cover = nodes[nodes[:, 0] == BY_COVER, 1]
-        in_sums = [search.sums.leaves[r].covers for r in np.unique(nodes[nodes[:, 0] == BY_SUM, 1]).tolist()]
+        by_cover = nodes[nodes[:, 0] == Reason.COVER, 1]
+        in_sums = [search.sums.leaves[r].covers for r in np.unique(nodes[nodes[:, 0] == Reason.SUM, 1]).tolist()]
         used = np.unique(np.concatenate([by_cover, *(np.array(own, dtype=np.int64) for own in in_sums)])).tolist()
         covers = {k: self._separation.stated(k, self._elements) for k in used}
         bound = max((cover_bound(self._elements.whole, cover) for cover in covers.values()), default=0.0)
@@ -233,3 +234,17 @@ class CoverSearch(SearchByLevels):
             left_out = {k: pool.masks[k].tolist() for k in used}
             leaves, terms = search.sums.leaves, search.sums.rows().terms
             self._proof = DiveProof(self._elements, nodes, covers=covers, left_out=left_out, sums=leaves, terms=terms)
+
+
+class CoversStage(DepthStage):
+    """Stage that counts the robots that must choose what no attack can afford to leave."""
+
+    name = "covers"
+
+    def fits(self, known: Known) -> bool:
+        """Tell whether no robot has more elements than its masks hold."""
+        return max(map(len, known.elements.problem.choices)) <= MOST_CHOICES
+
+    def begin(self, known: Known) -> CoverSearch:
+        """Begin at the level of the best plan."""
+        return CoverSearch(known, known.elements)

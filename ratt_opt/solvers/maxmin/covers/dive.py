@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ctypes import byref, c_int
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,10 +21,15 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.maxmin.params import CoverSearchParams
     from ratt_opt.solvers.maxmin.proof import Cover
 
-__all__ = ["BY_COVER", "BY_SUM", "CoverSums", "Dive", "DiveProof"]
+__all__ = ["CoverSums", "Dive", "DiveProof", "Reason"]
 
-BY_COVER, BY_SUM, TRIED = 0, 1, 2
-"""Reason that forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
+
+class Reason(IntEnum):
+    """Reason that forbids an element, or ends a frame: a cover, a sum of covers, or that the element was a dead end."""
+
+    COVER = 0
+    SUM = 1
+    TRIED = 2
 
 
 class Stack:
@@ -211,20 +217,20 @@ class DiveProof:
                 below = dict(sorted(below.items(), key=lambda item: item[0].bit_count()))
                 tree.append(self._branch(robot, *below))
             for mask, own in reversed(below.items()):
-                stack.append((following if mask == rest else subject if kind == TRIED else -1 - number, own))
+                stack.append((following if mask == rest else subject if kind == Reason.TRIED else -1 - number, own))
         return self._numbered(tree)
 
     def _gone(self, kind: int, subject: int, robot: int, place: int) -> int:
         """The mask of a robot's elements that one step forbids, whatever was forbidden before."""
-        if kind == TRIED:
+        if kind == Reason.TRIED:
             return 1 << place
-        if kind == BY_COVER:
+        if kind == Reason.COVER:
             return ~self._left_out[subject][robot]
         terms = self._terms[subject][self._elements.problem.choices[robot]]
         return sum(1 << p for p in np.flatnonzero(terms <= terms[place]).tolist())
 
     def _leaf(self, kind: int, subject: int) -> CoverLeaf:
-        if kind == BY_SUM:
+        if kind == Reason.SUM:
             return self._sums[subject]
         if subject not in self._leaves:
             self._leaves[subject] = CoverLeaf(covers=(subject,), weights=(1.0,))

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ratt_opt.solvers.maxmin.stages.plan_stage import PlanShare, PlanStage
+from ratt_opt.solvers.maxmin.plan_stage import PlanShare, PlanStage
 
 if TYPE_CHECKING:
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
-    from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd
+    from ratt_opt.solvers.maxmin.plan_stage import LowerEnd
 
 __all__ = ["AttackedStage", "BestAttackedStage", "ClimbStage", "QuickValuesStage", "outlast_first_plans"]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ratt_opt.budget import Stop
 from ratt_opt.solvers.maxmin.incumbent import PROVED
-from ratt_opt.solvers.maxmin.stages.plan_stage import PlanPhase, PlanStage
+from ratt_opt.solvers.maxmin.plan_stage import PlanPhase, PlanStage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
-    from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd
+    from ratt_opt.solvers.maxmin.plan_stage import LowerEnd
 
 __all__ = ["ProofStage"]
 

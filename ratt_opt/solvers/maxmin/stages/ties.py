@@ -9,18 +9,15 @@ import numpy as np
 from ratt_opt.problem import Attack
 from ratt_opt.solvers.maxmin.incumbent import PROVED, ProvedPlan
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
-from ratt_opt.solvers.maxmin.stages.plan_stage import PlanPhase, PlanShare, PlanStage
+from ratt_opt.solvers.maxmin.plan_stage import PlanPhase, PlanShare, PlanStage
 
 if TYPE_CHECKING:
     from ratt_opt._validation import IntArray
     from ratt_opt.budget import Budget
     from ratt_opt.solvers.maxmin.incumbent import Incumbent
-    from ratt_opt.solvers.maxmin.stages.plan_stage import LowerEnd
+    from ratt_opt.solvers.maxmin.plan_stage import LowerEnd
 
 __all__ = ["TiesStage", "break_ties"]
-
-NO_MORE = 1e-9
-"""Relative difference of values without attack that counts as none."""
 
 
 class TiesStage(PlanStage):
@@ -69,6 +66,7 @@ def _richer(incumbent: Incumbent, plan: IntArray, budget: Budget) -> IntArray:
     unattacked.add(Attack())
     least = min(incumbent.proved.lower, pool.plan_value(plan))
     least -= PROVED * abs(least) + rounding
+    no_more = 1e-9  # relative difference of values without attack that counts as none
     best, current = unattacked.plan_value(plan), plan.copy()
     improved = True
     while improved:
@@ -82,6 +80,6 @@ def _richer(incumbent: Incumbent, plan: IntArray, budget: Budget) -> IntArray:
                 if limit is not None and not limit.allows(other):
                     continue
                 value = unattacked.plan_value(other)
-                if value > best + NO_MORE * abs(best) + rounding and pool.plan_value(other) >= least:
+                if value > best + no_more * abs(best) + rounding and pool.plan_value(other) >= least:
                     best, current, improved = value, other, True
     return current
