@@ -132,7 +132,9 @@ class Problem:
     ) -> None:
         if not isinstance(objective, SetFunction):
             raise InputError("objective", "must be a SetFunction", type(objective).__name__)
-        owners = _check_owners(robot, objective.n)
+        if not isinstance(objective.n, (int, np.integer)):
+            raise InputError("objective.n", "must be an integer, of a property", type(objective.n).__name__)
+        owners = _check_owners(robot, int(objective.n))
         n_robots = int(owners.max()) + 1
         communication = (
             CommunicationGraph.complete(n_robots)

@@ -128,7 +128,7 @@ class PartBounder:
             others = np.logical_xor(base, np.eye(len(base), dtype=np.bool_))
             bounds = [self._from(part, other) for other in others[share > 0]]
             best = min(bounds, key=lambda one: one.at(share), default=bound)
-            if best.at(share) >= bound.at(share) * (1 - self._params.tolerance):
+            if not bounds or best.at(share) >= bound.at(share) - self._params.tolerance * abs(bound.at(share)):
                 break
             base, bound = others[share > 0][bounds.index(best)], best
         return bound

@@ -76,14 +76,15 @@ class SumFunction(SetFunction, Decomposition):
 
     Raises
     ------
-    InputError : a part has an element that does not exist, or a weight is negative.
+    InputError : a part has an element that does not exist, or a weight is negative; at the first value, a method of a
+        subclass does not answer as asked.
     """
 
-    __slots__ = ("_bounds", "_n", "_parts", "_weights")
+    __slots__ = ("_bounds", "_is_checked", "_n", "_parts", "_weights")
 
     def __init__(self, n: int, parts: Sequence[Part] | int, weights: ArrayLike | None = None) -> None:
         self._n = check_integer("n", n, low=1)
-        self._bounds = PartBounder(self)
+        self._bounds, self._is_checked = PartBounder(self), False
         self._parts: tuple[Part, ...] = ()
         if isinstance(parts, (int, np.integer)):
             count = check_integer("parts", parts, low=0)
@@ -102,6 +103,9 @@ class SumFunction(SetFunction, Decomposition):
     @property
     def n(self) -> int:
         """Size of the ground set."""
+        if not hasattr(self, "_n"):
+            rule = "must call super().__init__(n, parts) first"
+            raise InputError("objective", rule, type(self).__name__)
         return self._n
 
     @property
@@ -129,10 +133,33 @@ class SumFunction(SetFunction, Decomposition):
 
     def decomposition(self) -> Decomposition:
         """The function itself: it knows its parts."""
+        self._check_parts()
         return self
+
+    def _check_parts(self) -> None:
+        """Refuse parts whose elements are not ascending indices, or whose values are not one number a set; once."""
+        if self._is_checked:
+            return
+        for part in range(self.n_parts):
+            touching = np.asarray(self.touching(part))
+            ascends = touching.ndim == 1 and touching.dtype.kind in "iu" and bool((np.diff(touching) > 0).all())
+            if not ascends or (len(touching) and not 0 <= touching[0] <= touching[-1] < self.n):
+                rule = f"must be an array of ascending element indices in [0, {self.n - 1}], each once"
+                shown = f"{touching.dtype} array of shape {touching.shape}"
+                is_list = touching.ndim == 1 and touching.dtype.kind in "iu"
+                raise InputError(f"touching({part})", rule, touching.tolist() if is_list else shown)
+            sets = np.zeros((2, len(touching)), dtype=np.bool_)
+            sets[1] = True
+            values = self.part_values(part, sets)
+            if np.shape(values) != (2,) or not isinstance(values, np.ndarray) or values.dtype.kind not in "fiub":
+                kind = f"{values.dtype} array" if isinstance(values, np.ndarray) else type(values).__name__
+                rule = "must be an array of one number for each of 2 sets"
+                raise InputError(f"part_values({part}, membership)", rule, f"{kind} of shape {np.shape(values)}")
+        self._is_checked = True
 
     def evaluate(self, membership: BoolArray) -> FloatArray:
         """(K,) values of the subsets in the rows of ``membership`` (K, n)."""
+        self._check_parts()
         total = np.zeros(len(membership))
         for part in range(self.n_parts):
             total += self.weights[part] * self.part_values(part, membership[:, self.touching(part)])

@@ -31,20 +31,25 @@ class Climbing:
         self._known: dict[frozenset[int], float] = {}
         self._asked = attacks.problem.objective
 
-    def climbed(self, elements: IntArray, part: Budget) -> IntArray:
+    def climbed(self, elements: IntArray, part: Budget, *, attacks: bool = False) -> IntArray:
         """Exchange one robot's element at a time while the known attacks leave more, within a part of the budget.
 
-        All elements of a robot are valued in one batch, and the best of them is taken.
+        All elements of a robot are valued in one batch, and the best of them is taken. ``attacks`` : whether each
+        exchange is attacked before it counts, so that exact worst cases rise and no attack is missed
         """
         self._asked = metered_problem(self._attacks.problem, part).objective
         current = elements.copy()
         try:
+            if attacks:
+                self._attacks.attack(elements, part.part(), -np.inf)
             value, unchanged, i = self.value(elements), 0, 0
             while unchanged < len(current):
                 unchanged += 1
                 for base in self._bases(current, i):
                     part.check()
                     found = self._best_exchange(base, i, value)
+                    while attacks and found is not None and self._is_refuted(base, (i, found[0]), value, part):
+                        found = self._best_exchange(base, i, value)
                     if found is not None:
                         current, value, unchanged = base, found[1], 0
                         current[i] = found[0]
@@ -55,6 +60,14 @@ class Climbing:
         finally:
             self._asked = self._attacks.problem.objective
         return current
+
+    def _is_refuted(self, base: IntArray, exchange: tuple[int, int], value: float, part: Budget) -> bool:
+        """Attack a plan with one exchange until that leaves no more than a value; whether the attack was not known."""
+        part.check()
+        known, plan = len(self._attacks.known), base.copy()
+        plan[exchange[0]] = exchange[1]
+        self._attacks.attack(plan, part.part(), value)
+        return len(self._attacks.known) > known
 
     def _bases(self, plan: IntArray, robot: int) -> Iterator[IntArray]:
         """Plans in which a robot may take another element: one busy robot rests if no more may be busy."""

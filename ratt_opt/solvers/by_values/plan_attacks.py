@@ -52,10 +52,11 @@ class PlanAttacks:
         self._first.add(elements.tobytes())
         return self.attack(elements, self.budget.part(self._params.table) if tables else None)
 
-    def attack(self, elements: IntArray, part: Budget | None = None, aim: float = -np.inf) -> AttackResult:
+    def attack(self, elements: IntArray, part: Budget | None = None, aim: float | None = None) -> AttackResult:
         """Attack a plan, from where that ended; keep it if more is proved of it than of the one kept.
 
-        ``part`` : a share of what is left if absent; ``aim`` : what an attack has to leave at most to end it
+        ``part`` : a share of what is left if absent; ``aim`` : what an attack has to leave at most to end it, what the
+            plan kept is worth if absent
 
         Raises
         ------
@@ -64,8 +65,8 @@ class PlanAttacks:
         part = self.budget.part(self._params.attack) if part is None else part
         key = elements.tobytes()
         memory = self._begun.pop(key, None) or AttackMemory()
-        if self._is_kept:
-            aim = max(aim, self.lower)  # a plan that keeps no more is of no use
+        if aim is None:
+            aim = self._of_use
         result = worst_case_attack_unrounded(
             self.problem, elements, AttackOptions(budget=part, aim=aim, memory=memory, brief=True)
         )
@@ -106,10 +107,16 @@ class PlanAttacks:
             seconds = min(params.longer, params.longer_share * left) if at_first else left
             self.attack(elements, self.budget.part(params.attack if at_first else 1.0, at_least=seconds))
 
+    @property
+    def _of_use(self) -> float:
+        """Worst-case value that a plan has to exceed to be of use."""
+        return self.lower if self._is_kept else -np.inf
+
     def settle(self, elements: IntArray, aim: float) -> AttackResult:
         """Attack a plan exactly with all that is left, until its worst case is proved to be at most ``aim``.
 
         If first attacks end as ``HEURISTIC`` the second one goes on to the end; so do both if nothing is limited.
         """
+        aim = max(aim, self._of_use)
         result = self.attack(elements, self.budget.part(), aim)
         return self.attack(elements, self.budget.part(), aim) if result.stop is Stop.HEURISTIC else result

@@ -101,9 +101,13 @@ class PlanSearch:
         for plan in others:
             self._attacks.attack(plan)
         plans = sorted([*others, *self.plans], key=self._climbing.value, reverse=True)
-        closed = any(self._climbed(plan, gap) for plan in plans)
+        if not any(self._climbed(plan, gap) for plan in plans):
+            params = self._params.first_plans
+            part = self._budget.part(params.exchanges, at_least=params.beyond)
+            for plan in self.plans:
+                self._climbing.climbed(plan, part, attacks=True)
         self._budget.keep_to(self._whole)
-        return closed
+        return self._is_closed(gap)
 
     def run(self, gap: float) -> Stop:
         """Bound all plans, walk on from the best one, then divide all plans."""

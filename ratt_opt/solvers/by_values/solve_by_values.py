@@ -1,10 +1,13 @@
 """Plans for any set function, known by its values alone: a bracket of any size, within any number of values.
 
 First RATT's, the greedy and the myopic plan, each attacked and improved by exchanges of one element: no search returns
-less, so these go on for a moment if a limit is shorter. Small problems are enumerated (``exhaustive.py``).
-Beyond: bounds by rows (``row_tree.py``) if the function is submodular or a sum. Then walks from the best plan and
-branch and bound over all other plans take turns, by these rows or by monotonicity (``plan_tree.py``). It ends with
-exact attacks on plans that nothing else rules out.
+less, so these go on for a moment (0.4 s) if a limit is shorter. Exchanges judged by exact worst cases are a floor, too,
+if they end in that moment. On an idle core they took at most 0.1 s for twelve robots (two lost, or one lost and three
+links cut), and for twenty robots of which two are lost; 0.2 to 0.9 s if four are lost, 1 to 10 s if links are cut.
+
+Small problems are enumerated (``exhaustive.py``). Beyond: bounds by rows (``row_tree.py``) if the function is a sum or
+submodular. Then walks from the best plan and branch and bound over all other plans take turns, by these rows or by
+monotonicity (``plan_tree.py``). It ends with exact attacks on plans that nothing else rules out.
 """
 
 from __future__ import annotations

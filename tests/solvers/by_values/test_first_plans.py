@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import networkx as nx
 import numpy as np
 import pytest
 
 import ratt_opt as ro
+from ratt_opt.solvers.maxmin.params import FirstPlanParams
 from tests.solvers.by_values.test_rows import OwnSum
 from tests.solvers.maxmin.engine import NO_PLANS_LISTED
 from tests.strategies import Opaque, Submodular, information_data
@@ -74,6 +77,43 @@ def test_first_plans_are_a_floor_whatever_the_limit(kind, limit):
 def test_no_single_exchange_is_left_whatever_the_limit(kind, attacks):
     problem = team(kind, attacks, 5)
     assert not improves(problem, check(problem, 0))
+
+
+def exchanged(problem, plan):
+    """The worst case that exchanges reach, by definition: robot by robot its best element, judged by all attacks."""
+    sets = list(combinations(range(problem.n_robots), problem.alpha_s))
+
+    def exact(plans):
+        members = np.zeros((len(plans), len(sets), problem.objective.n), dtype=np.bool_)
+        for row, one in zip(members, plans, strict=True):
+            row[:, one] = True
+            for k, lost in enumerate(sets):
+                row[k, one[list(lost)]] = False
+        values = problem.objective.evaluate(members.reshape(-1, problem.objective.n))
+        return values.reshape(len(plans), len(sets)).min(axis=1)
+
+    plan, unchanged, i = np.array(plan), 0, 0
+    value = exact([plan])[0]
+    while unchanged < problem.n_robots:
+        unchanged += 1
+        others = [np.where(problem.robot[e] == np.arange(problem.n_robots), e, plan) for e in problem.choices[i]]
+        values = exact(others)
+        if values.max() > value * (1 + 1e-12):
+            plan, value, unchanged = others[int(values.argmax())], values.max(), 0
+        i = (i + 1) % problem.n_robots
+    return value
+
+
+@pytest.mark.parametrize("kind", ["facilities", "coverage", "submodular"])
+def test_exchanges_by_exact_attacks_are_a_floor(kind):
+    """Judged by known attacks alone, exchanges once ended at 0.98 of these."""
+    params = ro.MaxMinParams(first_plans=FirstPlanParams(beyond=60))
+    for seed in range(3):
+        rng = np.random.default_rng([seed, 12])
+        problem = ro.Problem(KINDS[kind](rng, 48), np.repeat(np.arange(12), 4), None, 2, 0)
+        kept = worst(problem, ro.solve_maxmin(problem, time_limit=0, params=params).elements)
+        for planner in (ro.ratt, ro.greedy, ro.myopic):
+            assert kept >= exchanged(problem, planner(problem).elements) * (1 - 1e-9), (seed, planner)
 
 
 @pytest.mark.slow

@@ -41,6 +41,8 @@ class FirstPlanParams:
         share of those left: with a fifth of one second, three quarters of what a second proves of RATT's plan for 20
         robots were left unproved
     ``rounds`` : of exchanges and an attack on what they reach
+    ``exchanges`` : share of the seconds left, but ``beyond`` at least, for exchanges from these plans each of which is
+        attacked before it counts: a floor for all searches against their time
     ``kept`` : values, some hundred megabytes at most; others are computed again
     """
 
@@ -54,6 +56,7 @@ class FirstPlanParams:
     longer: float = 1.0
     longer_share: float = 0.8
     rounds: int = 50
+    exchanges: float = 0.1
     kept: int = 500_000
 
 
