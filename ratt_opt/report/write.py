@@ -13,16 +13,20 @@ from ratt_opt.certificates.certification import CERTIFICATE
 from ratt_opt.report.csv_file import write_csv
 from ratt_opt.report.document import report_document
 from ratt_opt.report.figure import draw_or_remark, plan_figure, save_figure
+from ratt_opt.report.page.map_svg import page_maps
 from ratt_opt.report.page.page import report_page
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.plan_rows import PLAN_COLUMNS, plan_rows
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from ratt_opt.findings import Findings
 
 __all__ = ["FIGURES", "FILES", "write_figures", "write_numbers", "write_report", "write_verdict"]
 
-NUMBERS, FIGURES = ("report.json", "report.html", "plan.csv"), ("plan.png", "plan.svg")
+PAGE = "report.html"
+NUMBERS, FIGURES = ("report.json", PAGE, "plan.csv"), ("plan.png", "plan.svg")
 FILES = (*NUMBERS, *FIGURES)
 """All that :func:`write_report` writes beside the certificate."""
 
@@ -63,14 +67,17 @@ def write_numbers(report: Findings, folder: str | Path) -> list[Path]:
 
 
 def write_figures(report: Findings, folder: Path) -> tuple[list[Path], tuple[str, ...]]:
-    """Draw the figures of a report whose numbers are there: a second or two, most of them to load what draws.
+    """Draw the figures of a report whose numbers are there, and the maps of its page: a few seconds.
 
     If that fails, no file is written, and what is returned beside the files is said in the report too.
     """
 
     def draw() -> list[Path]:
         figure = plan_figure(report, picture_of(report.source, report))
-        return write_together(folder, dict.fromkeys(FIGURES, lambda file: save_figure(figure, file)))
+        page = report_page(report, page_maps(report))
+        writers: dict[str, Callable[[Path], object]] = dict.fromkeys(FIGURES, lambda file: save_figure(figure, file))
+        writers[PAGE] = lambda file: file.write_text(page, encoding="utf-8")
+        return write_together(folder, writers)[: len(FIGURES)]
 
     files, remarks = draw_or_remark(draw)
     if remarks:

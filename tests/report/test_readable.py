@@ -11,7 +11,7 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt.missions.drawing.figures import mission_figure
-from ratt_opt.report.page.map_drawing import SIZES, PageMap, map_svg
+from ratt_opt.report.page.map_svg import page_maps
 from ratt_opt.report.picture import picture_of
 from ratt_opt.report.spots import best_spot
 from tests.report.browser import opened
@@ -38,22 +38,6 @@ def overlap(a, b) -> float:
     return width * height if width > 0 and height > 0 else 0.0
 
 
-def word_boxes(svg: str, size: PageMap) -> list[tuple[float, float, float, float]]:
-    found = re.findall(r'<text x="([-\d.]+)" y="([-\d.]+)" class="small">([^<]+)</text>', svg)
-    return [(float(x), float(y) - size.line, float(x) + size.letter * len(text), float(y)) for x, y, text in found]
-
-
-def test_words_of_a_page_do_not_overlap(reports) -> None:
-    for report in reports:
-        broad, narrow = map_svg(picture_of(report.source, report), report, report.recommended).split("</svg>")[:2]
-        for svg, size in zip((broad, narrow), SIZES.values(), strict=True):
-            words = word_boxes(svg, size)
-            assert len(words) >= 10  # every target's number, and the length of the scale
-            shared = [overlap(a, b) for a, b in combinations(words, 2)]
-            assert sum(area > 1 for area in shared) <= (0 if svg is broad else 2)
-            assert all(box[0] >= 0 and box[2] <= size.width for box in words)
-
-
 def test_words_of_a_figure_do_not_overlap(reports) -> None:
     for report in reports:
         figure = report.plot()
@@ -72,17 +56,17 @@ def test_the_best_spot_is_the_first_that_covers_nothing() -> None:
     assert best_spot(boxes[:2], taken, inside) == (0, 1.0)
 
 
-def test_the_scale_bar_is_as_long_as_it_says(reports) -> None:
-    report = reports[0]
-    picture = picture_of(report.source, report)
-    svg = map_svg(picture, report, report.recommended).split("</svg>")[0]
-    length = float(re.search(r'class="scale"/><text [^>]*>([\d.]+) m<', svg)[1])
-    pixels = float(re.search(r'<path d="M12 543v5h([\d.]+)v-5" class="scale"/>', svg)[1])
-    discs = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="10" class="seeing"/>', svg)
-    seeing = sorted(picture.seeing)
-    a, b = (np.array(discs[k], dtype=float) for k in (0, -1))
-    metres = np.linalg.norm(picture.places[seeing[0]] - picture.places[seeing[-1]])
-    assert np.linalg.norm(a - b) / pixels == pytest.approx(metres / length, rel=0.01)
+def test_the_marks_of_a_page_lie_on_what_is_drawn(reports) -> None:
+    """Each robot and target has a mark of the page's own, whose centre is that of the drawn disc or star."""
+    for report in reports:
+        for name, svg in page_maps(report).items():
+            marks = np.array(re.findall(r'<circle cx="([-\d.]+)" cy="([-\d.]+)"', svg), dtype=float)
+            drawn = np.array(re.findall(r'<use xlink:href="[^"]*" x="([-\d.]+)" y="([-\d.]+)"', svg), dtype=float)
+            assert len(marks) == 18
+            assert (np.linalg.norm(marks[:, None] - drawn[None], axis=2).min(axis=1) < 0.1).all()
+            key = name.replace(" ", "-")
+            names = re.findall(r'(?:\bid="|href="#|url\(#)([^")]*)', svg)
+            assert all(one.startswith(f"{key}-") for one in names)  # another map's clips vanish while it is hidden
 
 
 def test_a_phone_shows_the_whole_report(tmp_path, reports) -> None:
@@ -92,18 +76,15 @@ def test_a_phone_shows_the_whole_report(tmp_path, reports) -> None:
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
         assert browser.execute_script("return document.documentElement.scrollWidth") <= 390
         sizes = browser.execute_script(
-            "return [...document.querySelectorAll('td, th, p, figcaption, svg.narrow text')]"
+            "return [...document.querySelectorAll('td, th, p, figcaption')]"
             ".filter(e => e.getClientRects().length && e.textContent.trim())"
-            ".map(e => parseFloat(getComputedStyle(e).fontSize) *"
-            " (e.closest('svg') ? e.closest('svg').getBoundingClientRect().width / 390 : 1))"
+            ".map(e => parseFloat(getComputedStyle(e).fontSize))"
         )
-        assert min(sizes) >= 10
-        shown = browser.execute_script(
-            "return ['broad', 'narrow'].map(k => document.querySelector('svg.' + k).getClientRects().length)"
-        )
-        assert shown == [0, 1]
+        drawn = browser.execute_script("return document.querySelector('svg.map').getBoundingClientRect().width")
+        unit = drawn / browser.execute_script("return document.querySelector('svg.map').viewBox.baseVal.width")
+        assert min(*sizes, 7 * unit) >= 10  # words of the map have 7 points
         wide = browser.execute_script(
-            "return [...document.querySelectorAll('td, th, p, svg.narrow')]"
+            "return [...document.querySelectorAll('td, th, p, div.wide')]"
             ".filter(e => e.getClientRects().length).map(e => e.getBoundingClientRect().right)"
         )
         assert max(wide) <= 390
@@ -125,7 +106,7 @@ def test_tracks_of_four_coordinates_have_ellipses_of_their_positions() -> None:
     picture = picture_of(report.source, report)
     np.testing.assert_allclose(picture.prior, [np.diag([4.0, 9.0])])
     np.testing.assert_allclose(picture.posterior, [np.diag([1 / (0.25 + 1.2), 1 / (1 / 9 + 2.5)])])
-    assert "<ellipse" in map_svg(picture, report, report.recommended)
+    assert "root of the trace left after measuring" in page_maps(report)["worst"]
     unknown = ro.bound(ro.InformationInput(**TRACK), **QUICK)
     assert picture_of(unknown.source, unknown).posterior is None  # which coordinates are positions is not told
 

@@ -12,14 +12,12 @@ from ratt_opt._version import CITATION
 from ratt_opt.report.bars import bar_ends
 from ratt_opt.report.description import describe
 from ratt_opt.report.notebook import html_table
-from ratt_opt.report.page.map_drawing import legend_html, map_svg
-from ratt_opt.report.palette import BLINDED, INK, LOST, SURVIVING, TARGET, looks_of
-from ratt_opt.report.picture import picture_of
+from ratt_opt.report.palette import SURVIVING, looks_of
 from ratt_opt.report.plan_rows import PLAN_HEADS, plan_rows
 from ratt_opt.report.tables import guarantee_text, omitted_texts, share_text, verdict_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from ratt_opt.findings import AssessedPlan, Findings
 
@@ -33,24 +31,22 @@ VIEW_TITLES = {
 }
 
 
-def report_page(report: Findings) -> str:
-    """Return the whole page as HTML."""
+def report_page(report: Findings, maps: Mapping[str, str] | None = None) -> str:
+    """Return the whole page as HTML; ``maps`` : SVG of each view, once they are drawn."""
     folder = resources.files("ratt_opt.report.page")
     style, script = ((folder / name).read_text(encoding="utf-8") for name in ("style.css", "script.js"))
-    colours = {"seeing": SURVIVING, "lost": LOST, "blinded": BLINDED, "target": TARGET, "ink": INK}
-    palette = ":root{" + "".join(f"--{name}:{colour};" for name, colour in colours.items()) + "}"
     plan = report.recommended
     title = f"{report.problem.n_robots} robots: the {plan.planner} plan under attack"
     return (
         '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{palette}{style}</style></head><body>"
+        f"<title>{escape(title)}</title><style>:root{{--seeing:{SURVIVING}}}{style}</style></head><body>"
         f'<a class="skip" href="#planners">Skip the map</a><main><h1>{escape(title)}</h1>'
-        f"{''.join(_sections(report))}</main><script>{script}</script></body></html>\n"
+        f"{''.join(_sections(report, maps or {}))}</main><script>{script}</script></body></html>\n"
     )
 
 
-def _sections(report: Findings) -> Iterator[str]:
+def _sections(report: Findings, maps: Mapping[str, str]) -> Iterator[str]:
     plan = report.recommended
     kept = _with_unit(bracket_text(plan.worst_case.lower, plan.worst_case.upper), report)
     share = share_text(plan.worst_case.lower, report.upper)
@@ -60,7 +56,7 @@ def _sections(report: Findings) -> Iterator[str]:
         f"{counted(report.problem.alpha_c, 'link')}. {escape(_share_sentence(share))} "
         f"No plan has more than {escape(_with_unit(up(report.upper, 10), report))}.</p>"
     )
-    yield from _map_section(report)
+    yield from _map_section(report, maps)
     yield from _planner_section(report)
     yield from _trust_section(report)
     yield from _plan_section(report)
@@ -76,7 +72,7 @@ def _share_sentence(share: str) -> str:
     return f"That is {share} of the best possible."
 
 
-def _map_section(report: Findings) -> Iterator[str]:
+def _map_section(report: Findings, maps: Mapping[str, str]) -> Iterator[str]:
     """One map for each attack. The page shows one of them; on paper, the worst."""
     yield '<section aria-labelledby="map-h"><h2 id="map-h">Map</h2><fieldset><legend>Show the team under</legend>'
     for k, name in enumerate(report.views):
@@ -87,15 +83,15 @@ def _map_section(report: Findings) -> Iterator[str]:
             f"{escape(VIEW_TITLES[name])}</label>"
         )
     yield "</fieldset>"
-    pictures = [picture_of(report.source, report, view) for view in report.views.values()]
-    for k, ((name, view), picture) in enumerate(zip(report.views.items(), pictures, strict=True)):
+    for k, (name, view) in enumerate(report.views.items()):
         hidden = " hidden" if k else ""
+        drawn = f'<div class="wide">{maps[name]}</div>' if name in maps else ""
         yield (
-            f'<figure class="view" id="view-{name.replace(" ", "-")}"{hidden}>{map_svg(picture, report, view)}'
+            f'<figure class="view" id="view-{name.replace(" ", "-")}"{hidden}>{drawn}'
             f"<figcaption>{escape(_caption(name, view, report))}</figcaption></figure>"
         )
-    yield f'{legend_html(pictures)}<p id="hint" role="status" aria-live="polite">'
-    yield "Point at a robot or target, or tab to it.</p></section>"
+    hint = "Point at a robot or target, or tab to it." if maps else "The maps are not drawn."
+    yield f'<p id="hint" role="status" aria-live="polite">{hint}</p></section>'
 
 
 def _with_unit(value: str, report: Findings) -> str:
