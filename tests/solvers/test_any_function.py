@@ -189,6 +189,18 @@ def test_large_modular_teams_without_link_attacks_close(robots, data):
     assert ro.solve_maxmin(problem).upper == truth
 
 
+@pytest.mark.parametrize(("robots", "blinded", "links"), [(26, 6, 0), (40, 10, 10)])
+def test_what_attacks_leave_open_of_a_plan_is_not_called_closed(robots, blinded, links):
+    """Nothing is limited, and attacks on teams of unknown values end unproved; the first robot has two elements."""
+    value = np.random.default_rng(0).uniform(1, 2, robots + 1)
+    f = ro.ConcaveOfModular(value)
+    found = ro.solve_maxmin(ro.Problem(Opaque(f), np.append(np.arange(robots), 0), None, blinded, links))
+    first = 0 if value[0] >= value[-1] else robots
+    best = sorted([first, *range(1, robots)], key=lambda e: value[e])[: robots - blinded]
+    assert found.stop is ro.Stop.HEURISTIC
+    assert found.lower < f(best) <= found.upper
+
+
 @pytest.mark.parametrize("n_robots", [8, 9])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_limited_search_proves_what_an_attack_on_ratt_s_plan_alone_does(n_robots, seed):

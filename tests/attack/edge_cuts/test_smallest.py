@@ -1,3 +1,4 @@
+from functools import partial
 from itertools import combinations
 
 import networkx as nx
@@ -7,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ratt_opt as ro
+from ratt_opt.attack.edge_cuts import cut_search
 from ratt_opt.attack.edge_cuts.smallest import bound_soon
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
@@ -92,6 +94,16 @@ def test_a_node_budget_returns_a_bracket(max_nodes):
     found = ro.smallest_largest_group(graph, 12, max_nodes=max_nodes)
     check(found, graph, 12)
     assert found.lower <= exact <= found.upper
+
+
+def test_what_ends_the_last_search_of_cuts_is_said(monkeypatch):
+    """Prices leave more groups than may be listed: no size less is decided, and nothing else was limited."""
+    monkeypatch.setattr(cut_search, "SearchParams", partial(cut_search.SearchParams, most_listed=1))
+    graph = nx.gnp_random_graph(25, 0.2, seed=0)
+    found = ro.smallest_largest_group(graph, 9)
+    check(found, graph, 9)
+    assert found.stop is ro.Stop.NODES
+    assert "more than 1 groups" in found.reason
 
 
 def test_a_method_that_does_not_apply_names_one_that_would():

@@ -39,6 +39,8 @@ def test_answers_and_limits_are_those_of_all_sets(seed):
     answers = MaxCardinalityBelow(team, threshold, protected)
     rng, budget = np.random.default_rng(seed), Budget()
     answers.limit_strongest(budget)
+    for k, (group, count) in enumerate(answers.limits):
+        assert all(count < before + (group & ~other).bit_count() for other, before in [(0, 0), *answers.limits[:k]])
     for group in rng.permutation(np.arange(1, 2**ROBOTS))[:60].tolist():
         truth = most(values, threshold, protected, group)
         assert answers.known(group) >= truth
