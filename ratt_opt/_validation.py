@@ -37,9 +37,6 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-LARGEST_EXACT = 2**53
-"""Largest integer up to which floats are exact; beyond it, integers are rounded."""
-
 
 def readonly(array: NDArray[Any]) -> NDArray[Any]:
     """Return a read-only view or copy of ``array`` that the caller's later writes cannot reach."""
@@ -66,7 +63,7 @@ def whole(value: object) -> object:
     """A float that is exactly an integer, as that ``int``; anything else, also what may be rounded, as it is."""
     if isinstance(value, (float, np.floating)):
         number = float(value)
-        if abs(number) <= LARGEST_EXACT and number.is_integer():
+        if abs(number) <= 2**53 and number.is_integer():  # larger integers are rounded
             return int(number)
     return value
 

@@ -6,7 +6,6 @@ import re
 
 __all__ = ["FileFormatError", "InputError", "ProofError", "UndecidedError", "printable"]
 
-_LONGEST_VALUE = 80
 _LITERAL = re.compile(
     r"[-+]?(\d[\d_]*\.?\d*|\.\d+)([eE][-+]?\d+)?|[-+]?([nN][aA][nN]|[iI]nf|[iI]nfinity)|[Tt]rue|[Ff]alse|None|null"
 )
@@ -26,7 +25,7 @@ def _shown(value: object) -> str:
     text = printable(str(value)) or repr(value)
     if isinstance(value, str) and (value != value.strip() or _LITERAL.fullmatch(text)):
         text = printable(repr(str(value)))
-    return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+    return text if len(text) <= 80 else text[:77] + "..."  # a line of a terminal
 
 
 class InputError(ValueError):

@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["AssessedPlan", "Findings", "value_unit"]
 
-PLANE = 2
-"""Coordinates of a state that is a position unless its source says otherwise."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class AssessedPlan:
@@ -165,7 +162,8 @@ def value_unit(f: SetFunction, units: Sequence[str] | None = None) -> str:
     if stated != "m\N{SUPERSCRIPT TWO}":
         return stated
     if units is None:
-        return stated if getattr(f, "dimension", PLANE) == PLANE else "units of the state, squared"
+        is_position = getattr(f, "dimension", 2) == 2  # in the plane, unless its source says otherwise
+        return stated if is_position else "units of the state, squared"
     output = getattr(f, "output", None)
     counts = range(len(units)) if output is None else np.unique(np.nonzero(output)[-1]).tolist()
     squares = list(dict.fromkeys(_square(units[k]) for k in counts))

@@ -30,7 +30,6 @@ OF_POSITIONS = 2.0**-49
 """Rounding of a position or an angle, relative to the largest number it is made of: a few roundings of 2^-53."""
 OF_ENTRIES = 2.0**-45
 """Rounding of an entry, relative to the sum of the sizes of its terms: a dozen operations, a few ulps each."""
-BITS = 160
 
 Point = tuple[arb, arb]
 
@@ -50,7 +49,7 @@ def differences(given: Scenario | InformationInput, objective: str) -> Callable[
             return "its record has other fields"
         if not isinstance(given, Scenario) or not _enclosable(given):
             return _unequal(record, expected, set())
-        with ctx.workprec(BITS):
+        with ctx.workprec(160):  # three times the bits of a float: balls are far narrower than the roundings allowed
             return (
                 _unequal(record, expected, {"prior", "information", "links"})
                 or ("" if _linked(given, record["links"], expected["links"]) else "its links differ")

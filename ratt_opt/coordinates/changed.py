@@ -30,9 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ChangedProblem", "change_error", "keeps_digits", "product_error", "selects", "sizes_of"]
 
-TOLERABLE = 1e-9
-"""Error of values, as a share of the criterion before any measurement, that is no reason to change coordinates."""
-
 
 class WithProof(Protocol):
     """A dataclass with a proof: a result of :func:`ratt_opt.solve_maxmin`."""
@@ -169,9 +166,12 @@ def change_error(
 
 
 def keeps_digits(problem: Problem, objective: InformationObjective) -> bool:
-    """Tell whether values lose few digits; ``objective`` : as it was given, or in other coordinates."""
+    """Tell whether values lose few digits; ``objective`` : as it was given, or in other coordinates.
+
+    Few are lost if nine digits of the criterion before any measurement are certain: a bracket needs no more of them.
+    """
     scale = objective.error_scale(sizes_of(objective.prior))
-    return scale is None or problem.evaluation_error <= TOLERABLE * float(objective.combine(scale))
+    return scale is None or problem.evaluation_error <= 1e-9 * float(objective.combine(scale))
 
 
 def selects(rows: FloatArray) -> bool:

@@ -42,14 +42,10 @@ if TYPE_CHECKING:
 
 __all__ = ["measured_coordinates"]
 
-RANK = 1e-9
-"""Directions that hold less than this share of an element's information are no measured ones, if ``SLACK`` agrees."""
 SLACK = 1e-12
 """Largest information of a plan outside the measured coordinates, in units of the prior's inverse."""
 ROUNDINGS = 16 * float(np.finfo(np.float64).eps)
 """Rounding as a share of the plan's whole information, whose sums round off as much."""
-REGULAR = 1e-6
-"""Least ratio of the singular values of ``C K``: below it the change of coordinates would cost digits."""
 KINDS = (TraceObjective, MaxEigenvalueObjective)
 """Criteria that may have an output."""
 
@@ -115,9 +111,10 @@ def _measured(problem: Problem) -> _Coordinates | None:
     deviations = np.sqrt(np.diagonal(objective.prior, axis1=-2, axis2=-1))
     scaled = objective.information * deviations[:, :, None] * deviations[:, None, :]
     sizes = np.trace(scaled, axis1=-2, axis2=-1)
-    shares = (scaled / np.maximum(sizes, SLACK / RANK)[..., None, None]).sum(axis=0)  # less than SLACK is rounding
+    least = 1e-9  # share of an element's information in a measured direction, far above rounding; SLACK checks the rest
+    shares = (scaled / np.maximum(sizes, SLACK / least)[..., None, None]).sum(axis=0)  # less than SLACK is rounding
     values, vectors = np.linalg.eigh(shares)
-    rank = max(1, int((values > RANK).sum(axis=-1).max()))
+    rank = max(1, int((values > least).sum(axis=-1).max()))
     if rank == objective.dimension:
         return None
     axes = np.flatnonzero(objective.information.any(axis=(0, 1, 2)))
@@ -156,7 +153,8 @@ def _change(objective: InformationObjective, measured: _Coordinates, *, as_outpu
     if kind is MaxEigenvalueObjective and not _is_measured(objective.prior, output, shown @ measured.turned):
         return None
     _, sizes, axes = np.linalg.svd(shown, full_matrices=False)
-    if (sizes[..., -1] <= (0.0 if as_output else REGULAR) * sizes[..., 0]).any():
+    regular = 0.0 if as_output else 1e-6  # least ratio of singular values: below it the change would cost digits
+    if (sizes[..., -1] <= regular * sizes[..., 0]).any():
         return None
     if shown.shape[-2] >= shown.shape[-1]:
         square = sizes[..., None] * axes

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 __all__ = ["with_unit_prior"]
 
-WORTHWHILE = 0.1
-"""Largest share of the error that may remain."""
 KINDS: tuple[Any, ...] = (TraceObjective, MaxEigenvalueObjective)
 """Criteria that may have an output."""
 
@@ -44,7 +42,8 @@ def with_unit_prior(problem: Problem) -> Problem:
     changed = _changed(objective, root)
     basis = np.asarray(np.linalg.inv(np.swapaxes(root, -1, -2)))
     made = ChangedProblem.of(problem, changed, basis, _error(problem, objective, changed, root))
-    return made if made.evaluation_error <= WORTHWHILE * problem.evaluation_error else problem
+    gains_a_digit = made.evaluation_error <= 0.1 * problem.evaluation_error
+    return made if gains_a_digit else problem
 
 
 def _changed(objective: InformationObjective, root: FloatArray) -> InformationObjective:

@@ -16,15 +16,7 @@ if TYPE_CHECKING:
     from ratt_opt.graph.communication import Link
     from ratt_opt.graph.threat import Threat
 
-__all__ = ["MOST_ATTACKS", "attacks_are_few", "partitions_by_few_cuts"]
-
-MOST_ATTACKS = 20_000
-"""Sets of links times sets of robots that are tried one by one: a second or two of the processor at 120 robots."""
-
-
-def attacks_are_few(threat: Threat) -> bool:
-    """Test whether all attacks that use the whole budgets are few enough to enumerate."""
-    return threat.n_attacks <= MOST_ATTACKS
+__all__ = ["partitions_by_few_cuts"]
 
 
 def partitions_by_few_cuts(

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 
 import ratt_opt as ro
-from ratt_opt.graph.few_cuts import attacks_are_few
+from ratt_opt.attack.edge_cuts.smallest import PARAMS
 from ratt_opt.graph.threat import Threat
 from tests.attack.stages.test_few_attacks import sparse_network
 
@@ -14,7 +14,7 @@ def test_two_cuts_and_a_limit():
     rng = np.random.default_rng(371)
     graph = sparse_network(rng, 60, 3)
     threat = Threat(ro.Problem(ro.Modular(np.ones(60)), np.arange(60), graph, 0, 2).communication, 0, 2)
-    assert attacks_are_few(threat)
+    assert threat.n_attacks <= PARAMS.one_by_one
     truth = min(
         max(len(group) for group in threat.graph.groups(cut)) for cut in combinations(sorted(threat.graph.links), 2)
     )
