@@ -104,25 +104,21 @@ def bound(
     ProofError : the verifier finds a fault in the search's own proof; its ``report`` holds what was found.
     """
     check_limits(gap, time_limit)
-    if guarantees not in GUARANTEES:
-        raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
-    _check_planners(planners or {})
-    began = datetime.now(UTC)
-    given = scenario_or_problem
+    planners = planners or {}
+    _check_names(guarantees, planners)
+    began, given = datetime.now(UTC), scenario_or_problem
     problem, source = _problem_of(given, objective, model)
-    check_problem(problem, knows_at_most=True)
     whole, steps, busy_since = Budget(time_limit), Steps(progress), process_time()
     budget = whole if certificate is None else whole.part(1 - SHARES.certificate)
     with steps("RATT and the baselines"):
         # Asked for once: of a slow function of the user's own these are most of what a short limit has time for.
         single = problem.objective.singletons()
-        threat = problem.threat
-        largest = by_caa(threat) if threat.links_alike else largest_group_in_share(problem, budget)
+        largest = by_caa(problem.threat) if problem.threat.links_alike else largest_group_in_share(problem, budget)
         alpha_cs = problem.n_robots - largest.lower
         robust = _planned(problem, alpha_cs, single, budget)
         baselines = undisturbed(budget, lambda: tuple(_baselines(problem, single, budget)))
         seen = _world_of(given, model, problem) if planners else None
-        baselines += tuple(_own_plans(problem, planners or {}, seen, budget))
+        baselines += tuple(_own_plans(problem, planners, seen, budget))
     with steps("the best possible plan"):
         search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, params=params)
         optimum, best = _best(problem, search, budget)
@@ -151,7 +147,7 @@ def bound(
         total_curvature=c,
         guarantees=sure,
         inapplicable={} if guarantees == "none" else inapplicable_guarantees(problem, alpha_cs),
-        omitted=omitted_parts(baselines, guarantees, planners or {}) | omitted_curvatures(guarantees, k=k, c=c),
+        omitted=omitted_parts(baselines, guarantees, planners) | omitted_curvatures(guarantees, k=k, c=c),
         certificate=NOT_ASKED_FOR,
         seconds=steps.seconds,
         created=began.isoformat(timespec="seconds"),
@@ -159,11 +155,14 @@ def bound(
         views=views,
         seeds={"random": SHARES.seed},
         interrupted=whole.stop() is Stop.INTERRUPTED,
-        remarks=remarks_on_data(problem)
-        + remarks_on_params(params)
-        + (scenario_remarks(given) if isinstance(given, Scenario) else ()),
+        remarks=_remarks(problem, params, given),
     )
     return _delivered(report.with_certificate(proof), failure)
+
+
+def _remarks(problem: Problem, params: MaxMinParams | None, given: HasProblem | Problem) -> tuple[str, ...]:
+    of_scenario = scenario_remarks(given) if isinstance(given, Scenario) else ()
+    return remarks_on_data(problem) + remarks_on_params(params) + of_scenario
 
 
 def _delivered(report: BoundReport, failure: ProofError | None) -> BoundReport:
@@ -216,10 +215,10 @@ def _problem_of(
     if isinstance(given, Problem):
         if objective is not None:
             raise InputError("objective", "must be absent if a problem is given (it has its own)", objective)
-        return given, None
+        return check_problem(given, knows_at_most=True), None
     if not isinstance(given, HasProblem):
         raise InputError("scenario_or_problem", "must be a scenario or a Problem", type(given).__name__)
-    return (given.problem() if objective is None else given.problem(objective)), given
+    return check_problem(given.problem() if objective is None else given.problem(objective), knows_at_most=True), given
 
 
 def _world_of(given: HasProblem | Problem, model: MissionModel | None, problem: Problem) -> PlannerWorld | None:
@@ -261,7 +260,9 @@ def _own_plans(
         yield undisturbed(budget, partial(assess, problem, name, plan, budget.part(SHARES.attack)))
 
 
-def _check_planners(planners: Mapping[str, Planner]) -> None:
+def _check_names(guarantees: str, planners: Mapping[str, Planner]) -> None:
+    if guarantees not in GUARANTEES:
+        raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
     for name, planner in planners.items():
         if name in TAKEN or not (isinstance(name, str) and name.isprintable() and name):
             raise InputError("planners", f"must have names that are none of {', '.join(TAKEN)}", name)

@@ -100,6 +100,9 @@ class LeastSetSearch:
 
     ``floor`` : no set is worth less; ``inside``, ``outside`` : only sets that contain the first and avoid the second
     ``in_depth`` : partial sets looked at before branch and bound, in the place of those of the parameters
+
+    The loop over nodes is its own, not that of ``search/branch_and_bound.py``: sets are handed out while a node is in
+    hand, one by one, and the caller lowers the threshold between two of them, by which the rest of the node is bounded.
     """
 
     def __init__(

@@ -31,6 +31,9 @@ class PlanarSearch:
     """Claim: the element's smallest (largest) marginal lies between ``bound`` and ``attained.value``.
 
     ``known`` : what the program found in searches for the same end of other elements; ``found`` : in this one.
+
+    The loop over regions is its own, not that of ``search/branch_and_bound.py``: what one program finds raises the
+    bounds of other open regions, too, so their order changes in place, and the regions of one set are bounded together.
     """
 
     def __init__(
