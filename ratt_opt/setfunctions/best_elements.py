@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from ratt_opt.setfunctions.decomposition import PartBounds
+
 __all__ = ["BestElements", "Coverage", "FacilityLocation"]
 
 
@@ -74,7 +76,12 @@ class BestElements(SumFunction):
             return 0.0
         return float(np.gcd.reduce(summands.astype(np.int64), initial=0))
 
-    def overestimator(self, part: int, share: FloatArray) -> Overestimator:
+    def overestimator(  # its formula takes no effort
+        self,
+        part: int,
+        share: FloatArray,
+        effort: PartBounds | None = None,  # noqa: ARG002
+    ) -> Overestimator:
         """The concave envelope at a fractional point (k,)."""
         u = self._of_part(part)
         order = np.argsort(-u, kind="stable")

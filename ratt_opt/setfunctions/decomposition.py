@@ -16,7 +16,7 @@ import numpy as np
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
-__all__ = ["Decomposition", "Overestimator", "rounded_up"]
+__all__ = ["DEFAULT", "Decomposition", "Overestimator", "PartBounds", "rounded_up"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +32,26 @@ class Overestimator:
     def at(self, share: FloatArray) -> float:
         """The bound at a fractional point (k,)."""
         return self.constant + float(self.gains @ share)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PartBounds:
+    """Effort for the bounds of one part.
+
+    ``most_enumerated`` : elements of a part whose ``2**k`` sets are enumerated: exact bounds, for more work
+    ``sets`` : sets added to a linear program at once, and ``rounds`` : times; ``tolerance`` : relative violation of one
+    ``steps`` : exchanges of elements of a base set: lower bounds, for more values
+    """
+
+    most_enumerated: int = 12
+    sets: int = 4
+    rounds: int = 30
+    tolerance: float = 1e-9
+    steps: int = 4
+
+
+DEFAULT = PartBounds()
+"""Effort of bounds that are not told another one."""
 
 
 class Decomposition(ABC):
@@ -70,8 +90,11 @@ class Decomposition(ABC):
         """(k,) no element adds more to a part, whatever set of others of them it is added to."""
 
     @abstractmethod
-    def overestimator(self, part: int, share: FloatArray) -> Overestimator:
-        """Bound all sets of a part by a modular function that is small at a fractional point ``share`` (k,)."""
+    def overestimator(self, part: int, share: FloatArray, effort: PartBounds | None = None) -> Overestimator:
+        """Bound all sets of a part by a modular function that is small at a fractional point ``share`` (k,).
+
+        ``effort`` : for it, if the part is not bounded by a formula
+        """
 
 
 def rounded_up(values: FloatArray) -> FloatArray:

@@ -14,19 +14,19 @@ all elements below a level give its envelope. From the best of these, elements a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ratt_opt.highs import LinearProgram, Rows, rows_of
-from ratt_opt.setfunctions.decomposition import Overestimator, rounded_up
+from ratt_opt.setfunctions.decomposition import DEFAULT, Overestimator, rounded_up
 
 if TYPE_CHECKING:
     from typing import Protocol
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.setfunctions.decomposition import PartBounds
 
     class Parts(Protocol):
         """Parts to bound; all are submodular if the function says so."""
@@ -39,30 +39,14 @@ if TYPE_CHECKING:
         def part_values(self, part: int, membership: BoolArray) -> FloatArray: ...
 
 
-__all__ = ["PartBounder", "PartBounds"]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PartBounds:
-    """Effort for the bounds of one part.
-
-    ``most_enumerated`` : elements of a part whose ``2**k`` sets are enumerated: exact bounds, for more work
-    ``sets`` : sets added to a linear program at once, and ``rounds`` : times; ``tolerance`` : relative violation of one
-    ``steps`` : exchanges of elements of a base set: lower bounds, for more values
-    """
-
-    most_enumerated: int = 12
-    sets: int = 4
-    rounds: int = 30
-    tolerance: float = 1e-9
-    steps: int = 4
+__all__ = ["PartBounder"]
 
 
 class PartBounder:
     """Bounds of the parts of one function; tables of parts and bounds of level sets are kept."""
 
-    def __init__(self, f: Parts, params: PartBounds | None = None) -> None:
-        self._f, self._params = f, params or PartBounds()
+    def __init__(self, f: Parts) -> None:
+        self._f = f
         self._tables: dict[int, FloatArray] = {}
         self._levels: dict[int, FloatArray] = {}
         self._cuts: dict[tuple[int, bytes], Overestimator] = {}
@@ -71,7 +55,7 @@ class PartBounder:
     def marginals(self, part: int) -> FloatArray:
         """(k,) no element adds more, whatever set it is added to."""
         f, k = self._f, len(self._f.touching(part))
-        if k <= self._params.most_enumerated:
+        if k <= DEFAULT.most_enumerated:
             table = self._table(part)
             steps = [table.reshape(-1, 2, 1 << e) for e in range(k)]
             return rounded_up(np.array([float((step[:, 1] - step[:, 0]).max()) for step in steps]))
@@ -80,13 +64,13 @@ class PartBounder:
         empty, full = self._ends(part)
         return rounded_up(np.full(k, full - empty))
 
-    def overestimator(self, part: int, share: FloatArray) -> Overestimator:
+    def overestimator(self, part: int, share: FloatArray, effort: PartBounds) -> Overestimator:
         """A modular bound of all sets that is small at a fractional point (k,)."""
-        if len(share) <= self._params.most_enumerated:
-            return _envelope(self._table(part), share, self._params)
+        if len(share) <= effort.most_enumerated:
+            return _envelope(self._table(part), share, effort)
         if self._f.is_submodular:
             bases = (self._best_level(part, share), share >= 1 / 2)
-            return self._exchanged(part, share, min(bases, key=lambda base: self._from(part, base).at(share)))
+            return self._exchanged(part, share, effort, min(bases, key=lambda base: self._from(part, base).at(share)))
         empty, full = self._ends(part)
         known = [Overestimator(empty, self.marginals(part)), Overestimator(full, np.zeros(len(share)))]
         return min(known, key=lambda bound: bound.at(share))
@@ -121,14 +105,14 @@ class PartBounder:
             low, high = (low, high - third) if left <= right else (low + third, high)
         return base(min(range(low, high + 1), key=lambda k: self._from(part, base(k)).at(share)))
 
-    def _exchanged(self, part: int, share: FloatArray, base: BoolArray) -> Overestimator:
+    def _exchanged(self, part: int, share: FloatArray, effort: PartBounds, base: BoolArray) -> Overestimator:
         """Add an element to the base set, or take one away, while that lowers the bound: the best one each time."""
         bound = self._from(part, base)
-        for _ in range(self._params.steps):
+        for _ in range(effort.steps):
             others = np.logical_xor(base, np.eye(len(base), dtype=np.bool_))
             bounds = [self._from(part, other) for other in others[share > 0]]
             best = min(bounds, key=lambda one: one.at(share), default=bound)
-            if not bounds or best.at(share) >= bound.at(share) - self._params.tolerance * abs(bound.at(share)):
+            if not bounds or best.at(share) >= bound.at(share) - effort.tolerance * abs(bound.at(share)):
                 break
             base, bound = others[share > 0][bounds.index(best)], best
         return bound

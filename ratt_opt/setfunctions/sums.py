@@ -9,7 +9,7 @@ import numpy as np
 from ratt_opt._validation import check_finite, check_integer, check_nonnegative, check_subset, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.setfunctions.base import SetFunction
-from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
+from ratt_opt.setfunctions.decomposition import DEFAULT, Decomposition, Overestimator
 from ratt_opt.setfunctions.part_bounds import PartBounder
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
+    from ratt_opt.setfunctions.decomposition import PartBounds
 
 __all__ = ["Part", "SumFunction"]
 
@@ -169,6 +170,6 @@ class SumFunction(SetFunction, Decomposition):
         """(k,) exact if the part's sets are enumerated; else the value alone if it is submodular, or that of all."""
         return self._bounds.marginals(part)
 
-    def overestimator(self, part: int, share: FloatArray) -> Overestimator:
+    def overestimator(self, part: int, share: FloatArray, effort: PartBounds | None = None) -> Overestimator:
         """The envelope if the part's sets are enumerated; else a base set's bound, or monotonicity alone."""
-        return self._bounds.overestimator(part, share)
+        return self._bounds.overestimator(part, share, effort or DEFAULT)

@@ -12,6 +12,7 @@ from ratt_opt.setfunctions.decomposition import Decomposition, Overestimator
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.criterion_parts import CriterionParts
+    from ratt_opt.setfunctions.decomposition import PartBounds
 
 __all__ = ["TargetParts"]
 
@@ -68,7 +69,12 @@ class TargetParts(Decomposition):
             self._marginals = self._objective.largest_marginals()
         return np.asarray(self._marginals[self._touching[part], part])
 
-    def overestimator(self, part: int, share: FloatArray) -> Overestimator:
+    def overestimator(  # its formula takes no effort
+        self,
+        part: int,
+        share: FloatArray,
+        effort: PartBounds | None = None,  # noqa: ARG002
+    ) -> Overestimator:
         """The tangent of one target's concave value at the information of a fractional point (k,)."""
         objective = self._objective
         information = objective.information[self._touching[part], part]

@@ -54,7 +54,7 @@ class PartRows:
     ) -> None:
         self._problem, self._parts, self._attacks = problem, parts, attacks
         self._params, self._of_pool, self._spacing = params.part_rows, params.rows, problem.objective.spacing
-        self.columns = columns
+        self.columns, self._effort = columns, params.part_bounds
         self._touching = [parts.touching(j) for j in range(parts.n_parts)]
         self._pool = InequalityPool(problem.robot, parts.n_parts, self._first_bounds(budget), params.rows)
         self._program = NodeProgram(len(columns.kinds), columns.of_kind, columns.limit)
@@ -146,7 +146,7 @@ class PartRows:
         new: list[tuple[int, Overestimator]] = []
         for j, touching in enumerate(self._touching):
             budget.check()
-            bound = self._parts.overestimator(j, left[touching])
+            bound = self._parts.overestimator(j, left[touching], self._effort)
             if self._parts.weights[j] * bound.at(left[touching]) < known[j] - self._params.tolerance * abs(known[j]):
                 new.append((j, bound))
         if new:
@@ -159,7 +159,7 @@ class PartRows:
             bounds = []
             for j, touching in enumerate(self._touching):
                 budget.check()
-                bounds.append((j, self._parts.overestimator(j, np.full(len(touching), share))))
+                bounds.append((j, self._parts.overestimator(j, np.full(len(touching), share), self._effort)))
             found.append(self._inequalities(bounds))
         return found
 

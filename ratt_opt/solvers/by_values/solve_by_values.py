@@ -14,6 +14,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ratt_opt.budget import Budget, OutOfBudget, Stop
 from ratt_opt.errors import InputError
 from ratt_opt.graph.outcomes import count_outcomes
@@ -76,7 +78,10 @@ def solve_by_values(  # noqa: PLR0917  (as solve_maxmin has them)
 
 
 def _enumerated(problem: Problem, budget: Budget, params: ValueTurnParams) -> MaxMinResult | None:
-    """Enumerate plans and outcomes within a share of the budget; ``None`` if there are too many."""
+    """Enumerate plans and outcomes within a share of the budget; ``None`` if there are too many. Plans are nodes."""
+    plans = float(np.prod([float(len(choice)) for choice in problem.choices]))
+    if budget.max_nodes is not None and plans > budget.max_nodes - budget.nodes:
+        return None
     if problem.threat.links_alike and count_outcomes(problem.threat, enough=params.outcomes) > params.outcomes:
         return None
     try:

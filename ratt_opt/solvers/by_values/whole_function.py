@@ -13,6 +13,7 @@ from ratt_opt.solvers.by_values.reliance import refuse_larger_gains
 if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
     from ratt_opt.setfunctions.base import SetFunction
+    from ratt_opt.setfunctions.decomposition import PartBounds
 
 __all__ = ["WholeFunction", "parts_of"]
 
@@ -48,7 +49,12 @@ class WholeFunction(Decomposition):
         """(n,) the values alone, less that of nothing."""
         return rounded_up(self._f.singletons() - self._f(()))
 
-    def overestimator(self, part: int, share: FloatArray) -> Overestimator:  # noqa: ARG002
+    def overestimator(
+        self,
+        part: int,  # noqa: ARG002
+        share: FloatArray,
+        effort: PartBounds | None = None,  # noqa: ARG002
+    ) -> Overestimator:
         """The best of three sets ``S``: nothing, the elements of a half or more, and those of a third or more."""
         bases = [np.array([], dtype=np.int64), *(np.flatnonzero(share >= level) for level in (1 / 2, 1 / 3))]
         return min((self._from(base) for base in bases), key=lambda bound: bound.at(share))

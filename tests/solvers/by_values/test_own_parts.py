@@ -63,6 +63,12 @@ def test_a_size_that_is_no_integer_is_refused(n):
         choose(f)
 
 
+def test_plans_that_are_enumerated_count_as_nodes():
+    problem = choose(Median())
+    assert ro.solve_maxmin(problem, max_nodes=1).stop is ro.Stop.NODES
+    assert ro.solve_maxmin(problem, max_nodes=216).stop is ro.Stop.EXHAUSTED
+
+
 def test_parts_may_be_negative():
     """What a part is worth without elements is subtracted everywhere; a search of large parts once failed on it."""
     shifted = type("Shifted", (Median,), {"part_values": lambda f, j, m: Median.part_values(f, j, m) - 5.0})

@@ -13,6 +13,7 @@ from ratt_opt.cli import run
 from ratt_opt.solvers.maxmin import params as plan_params
 from ratt_opt.solvers.maxmin.params import AT_LEAST_ONE
 from tests.extremes import places, value_at, with_one
+from tests.solvers.by_values.test_rows import OwnSum
 from tests.solvers.maxmin.engine import NO_PLANS_LISTED
 from tests.ways import go
 
@@ -56,7 +57,16 @@ def test_no_parameter_changes_what_is_claimed(place: str) -> None:
     check_at_extremes(place, team(), best_value(), max_nodes=4, time_limit=0.5)
 
 
-BY_VALUES = {"value_checks", "first_plans", "value_walk", "value_turns", "part_rows", "regions", "row_tree"}
+BY_VALUES = {
+    "value_checks",
+    "first_plans",
+    "value_walk",
+    "value_turns",
+    "part_bounds",
+    "part_rows",
+    "regions",
+    "row_tree",
+}
 
 
 @cache
@@ -75,11 +85,22 @@ def exchangeable_team() -> tuple[ro.Problem, float]:
     return problem, ro.exhaustive_optimum(problem).lower
 
 
+@cache
+def team_of_own_parts() -> tuple[ro.Problem, float]:
+    """Four robots and a sum of one's own, and its best worst case."""
+    f = OwnSum(np.random.default_rng(0).random((12, 4)) < 0.7)
+    problem = ro.Problem(f, np.repeat(np.arange(4), 3), None, 1, 0)
+    return problem, ro.exhaustive_optimum(problem).lower
+
+
+TEAMS = {"regions": exchangeable_team, "part_bounds": team_of_own_parts}
+
+
 @pytest.mark.parametrize("place", [place for place in PLACES if place.split(".")[0] in BY_VALUES])
 def test_no_parameter_changes_what_is_claimed_of_functions_by_values(
     place: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    problem, best = exchangeable_team() if place.startswith("regions") else own_team()
+    problem, best = TEAMS.get(place.split(".", maxsplit=1)[0], own_team)()
     go(monkeypatch, NO_PLANS_LISTED)
     check_at_extremes(place, problem, best, max_nodes=2, time_limit=0.1)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from ratt_opt._params import check_at_least_one
 from ratt_opt.errors import InputError
+from ratt_opt.setfunctions.decomposition import PartBounds
 from ratt_opt.solvers.maxmin.params.coverage import CoverageParams
 from ratt_opt.solvers.maxmin.params.depth import (
     CoverSearchParams,
@@ -113,6 +114,7 @@ class MaxMinParams:
     first_plans: FirstPlanParams = field(default_factory=FirstPlanParams)
     value_walk: ValueWalkParams = field(default_factory=ValueWalkParams)
     value_turns: ValueTurnParams = field(default_factory=ValueTurnParams)
+    part_bounds: PartBounds = field(default_factory=PartBounds)
     part_rows: PartRowParams = field(default_factory=PartRowParams)
     regions: RegionParams = field(default_factory=RegionParams)
     row_tree: RowTreeParams = field(default_factory=RowTreeParams)
