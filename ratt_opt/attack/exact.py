@@ -118,7 +118,8 @@ def worst_case_attack(
 
 def worst_case_attack_unrounded(problem: Problem, elements: ArrayLike, options: AttackOptions) -> AttackResult:
     """:func:`worst_case_attack` for other searches, of a prepared problem: both ends as they were computed."""
-    own, memory = options.own_budget(), options.memory
+    own = Budget.inside(options.budget, options.time_limit, options.max_nodes, options.max_evaluations)
+    memory = options.memory
     values = PlanValues(problem, elements)
     memory.check(problem, values.plan)
     is_metered = not isinstance(problem.objective, InformationObjective)

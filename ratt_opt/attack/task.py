@@ -13,7 +13,6 @@ from ratt_opt._rounding import down, up
 from ratt_opt._values import ReprMixin, counted, plain
 from ratt_opt.attack import params as parameters
 from ratt_opt.attack.params import AttackParams
-from ratt_opt.budget import Budget
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.problem import Attack, check_problem
 from ratt_opt.setfunctions.base import SetFunction
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
-    from ratt_opt.budget import Stop
+    from ratt_opt.budget import Budget, Stop
     from ratt_opt.problem import Problem
 
 __all__ = [
@@ -257,10 +256,6 @@ class AttackOptions:
     def __post_init__(self) -> None:
         if isinstance(self.aim, bool) or not isinstance(self.aim, Real) or math.isnan(self.aim):
             raise InputError("aim", "must be a number", self.aim)
-
-    def own_budget(self) -> Budget:
-        """The budget of this attack, inside the outer one. InputError : a limit is not a number >= 0."""
-        return Budget.inside(self.budget, self.time_limit, self.max_nodes, self.max_evaluations)
 
 
 @dataclass(frozen=True, slots=True)

@@ -161,7 +161,7 @@ class _DualProgram:
         upper = np.concatenate([np.full(n, box * (classes.rest == 0)), np.full(k, box * n), np.ones(k)])
         sizes = list(range(n + k, n + 2 * k)), number.tolist()
         self._program = LinearProgram(self._cost, lower, upper, rows=rows_of([sizes], [1.0], [1.0]), maximise=True)
-        self._entered: dict[tuple[int, int], None] = {}
+        self._entered: set[tuple[int, int]] = set()
         self._enter(self._seeds())
 
     def solve(self) -> tuple[FloatArray, FloatArray, float] | None:
@@ -193,7 +193,7 @@ class _DualProgram:
 
     def _enter(self, sets: Iterable[tuple[int, int]]) -> None:
         fresh = [one for one in dict.fromkeys(sets) if one not in self._entered]
-        self._entered.update(dict.fromkeys(fresh))
+        self._entered.update(fresh)
         rows = [self._row(c, k) for c, k in fresh]
         if rows:
             self._program.add_rows(rows_of(rows, np.full(len(rows), -np.inf), np.zeros(len(rows))))

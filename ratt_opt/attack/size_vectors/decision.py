@@ -17,7 +17,7 @@ from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.least_sets.least_set_search import LeastSetSearch
 from ratt_opt.attack.size_vectors.disjoint_sets import MOST_ROBOTS
 from ratt_opt.attack.size_vectors.family_search import FamilySearch, SetLists
-from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
+from ratt_opt.attack.thresholds.threshold_search import Answer, Decision, Threshold
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -44,7 +44,7 @@ class _Sets:
         return min(self.search.lower, self.search.threshold, *self.values.values())
 
 
-class SizeDecision:
+class SizeDecision(Decision):
     """Decision of thresholds for one plan."""
 
     def __init__(self, team: Team, threat: Threat, vectors: Sequence[Sizes]) -> None:
@@ -58,9 +58,6 @@ class SizeDecision:
     def least(self) -> float:
         """No attack leaves less: some group has at least the smallest size that a largest group may have."""
         return self._sets[self._smallest].least if self._smallest in self._sets else -np.inf
-
-    def learn(self, partition: Partition) -> None:
-        """Ignore an attack: it proves nothing about other thresholds."""
 
     def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
         """Decide one threshold; ``OPEN`` after that many nodes.

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from ratt_opt.attack.task import AttackTask
     from ratt_opt.attack.team import Team
     from ratt_opt.graph.survivor_sizes import Sizes
-    from ratt_opt.problem import Problem
 
 __all__ = ["PossibleSizesStage"]
 
@@ -84,22 +83,18 @@ def possible_sizes_bound(task: AttackTask, team: Team, least: int) -> int:
 
 
 def _vectors_bound(task: AttackTask, team: Team, vectors: list[Sizes]) -> None:
-    """Every attack leaves groups of unblinded robots of the sizes of a vector, or mergers of them."""
+    """Attack a complete graph by these size vectors; what that proves holds for the task, however it ends.
+
+    Every attack leaves groups of unblinded robots of the sizes of a vector, or mergers of them.
+    """
     problem, bracket = task.problem, task.bracket
     every_link = comb(problem.n_robots, 2)
     relaxed = replace(problem, graph=None, alpha_c=every_link, protected_links=frozenset())
     start = AttackBracket(bracket.attack, bracket.upper, bracket.lower, bracket.rounding)
-    _search(task, team, relaxed, start, vectors)
-
-
-def _search(
-    task: AttackTask, team: Team, relaxed: Problem, start: AttackBracket, vectors: list[Sizes] | None = None
-) -> None:
-    """Attack the relaxed problem from the bracket ``start``; what that proves bounds the task's, however it ends."""
     try:
         search_size_vectors(SizeVectorSearch(replace(task, problem=relaxed, bracket=start, records=[]), team, vectors))
     finally:
-        task.bracket.raise_lower(min(start.lower, start.upper))
+        bracket.raise_lower(min(start.lower, start.upper))
 
 
 def _sets_below(task: AttackTask, team: Team, possible: PossibleSizes) -> _SetValues | None:

@@ -22,7 +22,7 @@ from ratt_opt.attack.annealing import Partition
 from ratt_opt.attack.thresholds.columns import UNIT, dual_program, reduced_cost_rows
 from ratt_opt.attack.thresholds.exact_cover import ExactCover, packed
 from ratt_opt.attack.thresholds.pricing import DualPrices, GroupSearch, Question
-from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
+from ratt_opt.attack.thresholds.threshold_search import Answer, Decision, Threshold
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -115,7 +115,7 @@ class GroupPrices:
         self._program = None
 
 
-class ThresholdDecision:
+class ThresholdDecision(Decision):
     """Decision of thresholds for one plan; groups found for one threshold serve the next."""
 
     def __init__(self, plan: PricingProblem) -> None:
@@ -130,11 +130,6 @@ class ThresholdDecision:
             self.prices.add([KnownGroup(robots=alone, need=0, value=float(plan.team.single[i]))])
             if not self._links.seeing[i]:
                 self.prices.add([KnownGroup(robots=alone, need=1, value=0.0)])
-
-    @property
-    def least(self) -> float:
-        """Minus infinity: this method decides thresholds and proves nothing else."""
-        return -np.inf
 
     def learn(self, partition: Partition) -> None:
         """Add the groups of an attack to the program."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
 from math import inf, isinf
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from ratt_opt.attack.annealing import Starts
 from ratt_opt.budget import OutOfBudget, Stop
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from ratt_opt.attack.thresholds.pricing import DualPrices, PricingProblem
     from ratt_opt.budget import Budget
 
-__all__ = ["Answer", "Threshold", "ThresholdSearch"]
+__all__ = ["Answer", "Decision", "Threshold", "ThresholdSearch"]
 
 
 class Threshold(Enum):
@@ -43,21 +44,25 @@ class Answer:
     prices: DualPrices | None = None
 
 
-class Decision(Protocol):
+class Decision(ABC):
     """Decision of thresholds for one plan."""
 
     @property
     def least(self) -> float:
         """No attack leaves less, whatever became of thresholds."""
-        ...
+        return -inf
 
+    @abstractmethod
     def decide(self, threshold: float, budget: Budget, nodes: int) -> Answer:
-        """Decide one threshold; ``OPEN`` after that many nodes."""
-        ...
+        """Decide one threshold; ``OPEN`` after that many nodes.
 
-    def learn(self, partition: Partition) -> None:
+        Raises
+        ------
+        OutOfBudget : the time is up.
+        """
+
+    def learn(self, partition: Partition) -> None:  # noqa: B027  (not all decisions learn)
         """Take note of the groups of an attack."""
-        ...
 
 
 class ThresholdSearch:
