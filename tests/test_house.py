@@ -1,4 +1,4 @@
-"""Rules of all modules: one value a constant, one meaning a class name, no import circle (types included)."""
+"""Rules of all modules: one value a constant, few numbers, one meaning a class name, no circle (types included)."""
 
 import ast
 from collections import Counter
@@ -83,6 +83,37 @@ def test_no_import_runs_in_a_circle() -> None:
     # Packages hand names on, and load those of the library only when they are asked for.
     faces = {module_name(path) for path in FILES if path.name == "__init__.py"}
     assert in_circles(imports({module: text for module, text in texts.items() if module not in faces})) == set()
+
+
+def numbers(text: str) -> list[str]:
+    """Names to which the top level of a module assigns a number that is written out."""
+
+    def is_number(node: ast.AST) -> bool:
+        if isinstance(node, ast.UnaryOp):
+            return is_number(node.operand)
+        if isinstance(node, ast.BinOp):
+            return is_number(node.left) and is_number(node.right)
+        return isinstance(node, ast.Constant) and type(node.value) in {int, float}
+
+    found: list[str] = []
+    for node in ast.parse(text).body:
+        if isinstance(node, (ast.Assign, ast.AnnAssign)) and node.value is not None:
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            values = node.value.elts if isinstance(node.value, ast.Tuple) else [node.value]
+            if any(map(is_number, values)):
+                found += [x.id for target in targets for x in ast.walk(target) if isinstance(x, ast.Name)]
+    return found
+
+
+def test_a_number_is_noticed() -> None:
+    text = "A = 1\nB: float = -2.0**3\nC, D = 1, 'x'\nE = (0.5, 1)\nF = True\nG = len('x')\ndef f(): H = 1"
+    assert numbers(text) == ["A", "B", "C", "D", "E"]
+
+
+def test_a_new_number_is_a_parameter() -> None:
+    """What is left at the top of modules is mathematics: a tolerance with its reason, a limit of a format."""
+    package = [path for path in FILES if path.is_relative_to(ROOT / "ratt_opt")]
+    assert sum(len(numbers(path.read_text(encoding="utf-8"))) for path in package) <= 150
 
 
 def classes_of(texts: dict[str, str]) -> dict[str, set[str]]:
