@@ -13,7 +13,7 @@ from ratt_opt.attack.staging import without_stages
 from ratt_opt.attack.thresholds.dual_prices import ThresholdDecision
 from ratt_opt.attack.thresholds.threshold_search import Answer, Threshold
 from ratt_opt.solvers.maxmin import params as plan_parameters
-from ratt_opt.solvers.maxmin.adversary import PlanIndependentAttacks
+from ratt_opt.solvers.maxmin.adversary import Adversary, PlanIndependentAttacks
 from ratt_opt.solvers.maxmin.frontier import Backjumps
 from ratt_opt.solvers.maxmin.params import DivisionParams, LevelParams
 from ratt_opt.solvers.maxmin.restarts import RestartedSearch
@@ -59,6 +59,7 @@ PLAN_SWITCHES: dict[str, Patches] = {
     "backjumps": ((Backjumps, "follow", _gives(None)),),
     "groups closed for all plans": ((GroupProofs, "find", _gives(None)),),
     "small groups": ((SmallGroups, "narrow", lambda _search, node, _level: node),),
+    "exchanges next to known outcomes": ((Adversary, "_learn_near", _gives(False)),),
     "lasting attacks": ((PlanIndependentAttacks, "of", lambda _problem, attack: attack),),
     "dividing by what cuts lose": _planned(division=DivisionParams(flat=float("inf"))),
     "levels above the best plan": _planned(levels=LevelParams(shares=(0.0,))),
