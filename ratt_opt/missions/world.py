@@ -11,7 +11,6 @@ import numpy as np
 from ratt_opt._validation import FloatArray, IntArray, check_integer, readonly
 from ratt_opt.errors import InputError
 from ratt_opt.graph.communication import CommunicationGraph
-from ratt_opt.missions.ahead.dominance import undominated
 from ratt_opt.missions.ahead.horizon import (
     OUTPUTS,
     Sequences,
@@ -27,6 +26,7 @@ from ratt_opt.problem import Attack, Problem
 from ratt_opt.scenario.model import Scenario
 from ratt_opt.setfunctions.checked_matrices import WIDEST
 from ratt_opt.setfunctions.criteria.registry import WITH_OUTPUT, get_criterion
+from ratt_opt.solvers.undominated import undominated_elements
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -180,7 +180,8 @@ class World:
     def objective(self, belief: Belief, sequences: Sequences, time: float) -> tuple[InformationObjective, Sequences]:
         """The criterion of all sequences that are not dominated, and these; a single step keeps them all."""
         if self.horizon > 1 and self.reads == 2:
-            kept, _ = undominated(self._blocks(sequences, self._predictions(belief, time)), sequences.owner)
+            blocks = self._blocks(sequences, self._predictions(belief, time))
+            kept = undominated_elements(blocks.reshape(len(blocks), -1, 2, 2), sequences.owner)
             sequences = sequences.only(kept)
         return self.criterion(belief, sequences, time), sequences
 

@@ -1,7 +1,6 @@
 """Several steps ahead: the joint criterion is the Kalman filter run step by step; dropped sequences cost nothing."""
 
 from dataclasses import replace
-from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -17,7 +16,6 @@ from ratt_opt import (
     solve_maxmin,
     worst_case_attack,
 )
-from ratt_opt.missions.ahead.dominance import undominated
 from ratt_opt.missions.beam import beam_sequences, solve_by_columns
 from ratt_opt.missions.players.attack_models import RenewedAttacks
 from ratt_opt.missions.world import World
@@ -131,26 +129,6 @@ def test_the_optimum_over_two_steps_is_that_of_all_plans(objective: str) -> None
     assert found.upper == pytest.approx(best, rel=1e-7)
 
 
-def test_dropped_sequences_are_dominated_exactly() -> None:
-    """Speeds and turn rates that cancel give equal matrices; a better sensor dominates. Decided on fractions."""
-    rng = np.random.default_rng(0)
-    root = rng.normal(size=(6, 2, 2, 2, 2))
-    information = root @ root.swapaxes(-1, -2)
-    information[3] = information[0]  # a tie: the first stays
-    information[4] = information[1] / 2  # dominated
-    information[5] = information[1] + 1e-3 * np.eye(2)  # dominates 1, and so 4
-    owner = np.array([0, 0, 0, 0, 0, 0])
-    kept, by = undominated(information, owner)
-    assert by == {3: 0, 4: 5, 1: 5}
-    assert kept.tolist() == [0, 2, 5]
-    for e, f in by.items():
-        for more, less in zip(information[f].reshape(-1, 4), information[e].reshape(-1, 4), strict=True):
-            a, b, _, c = (Fraction(x) - Fraction(y) for x, y in zip(more, less, strict=True))
-            assert a >= 0
-            assert a * c >= b * b
-    assert undominated(information, np.arange(6))[1] == {}
-
-
 @pytest.mark.parametrize("output", ["mean", "last"])
 def test_missions_look_ahead_for_the_worst_axis(output: str) -> None:
     world = world_of(2, output, objective="maxeig")
@@ -179,29 +157,6 @@ def test_one_step_of_moving_targets_takes_any_criterion(objective: str) -> None:
     else:
         expected = np.linalg.eigvalsh(before).max() - np.linalg.eigvalsh(after).max()
     assert problem.objective(plan) == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize("scale", [1.0, 1e-160, 1e90])
-def test_floats_never_overrule_fractions(scale: float) -> None:
-    """Differences of rank one but for the last digit, for products that underflow too."""
-    rng = np.random.default_rng(7)
-    base, step = rng.standard_normal((2, 12, 3, 1, 2))
-    information = base[..., :, None] * base[..., None, :]
-    information[4:] = information[:8] + step[4:, ..., :, None] * step[4:, ..., None, :] * rng.choice(
-        [0, 1, 1], (8, 1, 1, 1, 1)
-    )
-    information = (information + np.swapaxes(information, -1, -2)) / 2 * scale
-
-    def below(e: int, f: int) -> bool:
-        for less, more in zip(information[e].reshape(-1, 4), information[f].reshape(-1, 4), strict=True):
-            a, b, _, c = (Fraction(x) - Fraction(y) for x, y in zip(more, less, strict=True))
-            if a < 0 or c < 0 or a * c < b * b:
-                return False
-        return f < e or not np.array_equal(information[e], information[f])
-
-    kept, by = undominated(information, np.zeros(12, dtype=np.int64))
-    assert kept.tolist() == [e for e in range(12) if not any(below(e, f) for f in range(12) if f != e)]
-    assert all(below(e, f) for e, f in by.items())
 
 
 def test_dropping_loses_no_value() -> None:
