@@ -3,13 +3,8 @@
 An interrupt (Ctrl-C) ends each of its programs with one line and 130, also while modules are still imported.
 """
 
-from __future__ import annotations
-
 import sys
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from types import TracebackType
+from types import TracebackType
 
 INTERRUPTED = 130
 

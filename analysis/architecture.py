@@ -5,23 +5,18 @@ packages' docstrings, arrows from the import statements. Nothing in the picture 
 top.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import textwrap
 import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.patches import FancyBboxPatch
+from matplotlib.axes import Axes
+from matplotlib.patches import FancyBboxPatch
 
 __all__ = ["Room", "rooms"]
 

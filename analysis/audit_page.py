@@ -6,13 +6,11 @@ ratio; ``--figure FILE`` and ``--instances FILE`` name pictures beside the page.
 ``ratt-opt audit --search-whole --out DIR`` become those that later audits re-check.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ratt_audit.report.chains import chain_lines
 from ratt_audit.report.findings import (
@@ -27,15 +25,11 @@ from ratt_audit.report.findings import (
     title,
 )
 from ratt_audit.report.pages import finding_lines
+from ratt_audit.report.records import LedgerDocument, WholeRecord, WorstRecord
+from ratt_audit.whole.recorded import Recorded
 from ratt_opt import caa, worst_case_ratio
 from ratt_opt._files import write_atomically
 from ratt_opt.worst_ratio.closed_form import pattern_free_ratio
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from ratt_audit.report.records import LedgerDocument, WholeRecord, WorstRecord
-    from ratt_audit.whole.recorded import Recorded
 
 __all__ = ["CASES", "page", "ratio_table", "realistic_table", "theorem1"]
 

@@ -5,8 +5,6 @@ the first sentence of its comment. A function that a header marks ``EXPORTED`` b
 Its argument ``Name *name`` is one record, ``Name name[]`` an array of them.
 """
 
-from __future__ import annotations
-
 import re
 from textwrap import wrap
 from typing import Any

@@ -1,24 +1,18 @@
 """Claims as data, each judged by paired differences with their intervals, and the tables that report them."""
 
-from __future__ import annotations
-
 import csv
 import io
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
 from ratt_opt._files import write_atomically
+from ratt_opt._validation import FloatArray
 from ratt_opt.report.latex import latex_table
 from ratt_opt.studies.statistics import Estimate, Verdict, column, estimate, judge, select
 from ratt_opt.studies.store import read_table
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from ratt_opt._validation import FloatArray
 
 __all__ = ["Claim", "write_claims"]
 

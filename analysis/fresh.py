@@ -1,15 +1,10 @@
 """Environments of their own, for what is built and installed: with pip's dependencies, or offline."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 __all__ = ["installed", "run_alone"]
 

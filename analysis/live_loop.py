@@ -7,8 +7,6 @@ planner: it reads a line, calls ``tracker.step``, and answers with the controls.
 answers that took longer than the period, the tracker plans that were not ready within its share of it.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import subprocess

@@ -5,25 +5,21 @@ program fills the places. With ``--check`` it also measures again what takes les
 value is off by more than its factor or a page shows another one.
 """
 
-from __future__ import annotations
-
 import argparse
 import re
 import sys
 import tempfile
 import time
 import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from analysis.benchmarks.instances import SETTINGS
 from ratt_opt import certify, greedy, random_scenario, ratt, solve_maxmin, verify_certificate, worst_case_attack
 from ratt_opt.scenario.limited_view import demo_scenario
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 __all__ = ["AGAIN", "Value", "filled", "main", "places", "values"]
 

@@ -6,8 +6,6 @@ it the files stay as they are, and each output must agree with what is stored. A
 without a last table of claims and computed verdicts.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import math
@@ -15,16 +13,14 @@ import os
 import re
 import sys
 import tempfile
+from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from analysis.fresh import installed
 from ratt_opt.report.verdicts import HEAD
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
 
 __all__ = ["Agreement", "differences", "main", "outputs"]
 

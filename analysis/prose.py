@@ -6,8 +6,6 @@ A docstring, private ones too, and a comment begin with an imperative or a noun 
 Without arguments it reads every page and notebook, and every Python file of the package and of the studies.
 """
 
-from __future__ import annotations
-
 import ast
 import io
 import json
@@ -15,12 +13,9 @@ import re
 import sys
 import tokenize
 import tomllib
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
 
 __all__ = ["Finding", "Passage", "findings", "fragments", "main", "passages", "read_words", "readable_files"]
 

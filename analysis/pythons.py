@@ -6,8 +6,6 @@ the oldest Python with every dependency at its lower bound, which must resolve t
 machine is named, and is a failure unless ``--available`` says that it may be missing. ``--only`` runs some of them.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import re
@@ -16,13 +14,10 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
 
 __all__ = ["Environment", "environments", "find_python", "lower_bounds", "main"]
 

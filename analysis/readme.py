@@ -7,8 +7,6 @@ are. ``<!-- table: COMMAND -->`` is followed by a Markdown table that the comman
 before an image copies ``FILE`` to the image's path.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -6,20 +6,16 @@ a fresh environment whose dependencies are those of the running one, and plans a
 out the check of twine, for a machine that has none.
 """
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys
 import tarfile
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from analysis.fresh import installed, run_alone
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 __all__ = ["build", "install_and_plan", "main", "unpacked"]
 

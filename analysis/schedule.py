@@ -1,17 +1,13 @@
 """The schedules of stages as Markdown: ``python -m analysis.schedule criterion|function|sizes|bounds|plans``."""
 
-from __future__ import annotations
-
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 from ratt_opt.attack.params import AttackParams
 from ratt_opt.attack.size_vectors.size_vector_search import SIZE_STAGES
 from ratt_opt.attack.stages.schedule import CRITERION_STAGES, VALUE_STAGES
 from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES, PLAN_STAGES
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 TABLES: dict[str, Sequence[Any]] = {
     "criterion": CRITERION_STAGES,

@@ -1,15 +1,10 @@
 """Rows of a study: one CSV file and one printed table."""
 
-from __future__ import annotations
-
 import csv
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from ratt_opt._rounding import named_text
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 __all__ = ["append_csv", "print_table", "read_csv", "write_csv"]
 

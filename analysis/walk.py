@@ -9,8 +9,6 @@ and the whole witnesses of the lines that fail. The notebooks have a walk of the
 With ``--offline`` the dependencies are those of the running environment; otherwise pip gets them.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import csv
@@ -20,15 +18,12 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from analysis.fresh import installed, run_alone
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 __all__ = ["AIMS", "CHECKS", "REVIEW", "Job", "code_lines", "jobs_of", "main", "run_job"]
 

@@ -4,8 +4,6 @@
 ``build`` chooses from what is solved and writes the library anew.
 """
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 

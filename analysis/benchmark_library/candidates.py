@@ -1,11 +1,10 @@
 """Candidates of the benchmark: families of instances, each drawn from a stated call and seed."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -16,13 +15,7 @@ from ratt_opt.benchmark.instances.instance import BenchmarkInstance
 from ratt_opt.missions.first_step import first_step
 from ratt_opt.scenario.on_graph import graph_scenario
 from ratt_opt.worst_ratio.families import link_only_instance, pair_instance, sensing_instance, shared_plan_instance
-from ratt_opt.worst_ratio.witness import attaining_instance, limit_instance
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-    from typing import Any
-
-    from ratt_opt.worst_ratio.witness import RatioWitness
+from ratt_opt.worst_ratio.witness import RatioWitness, attaining_instance, limit_instance
 
 __all__ = ["Candidate", "candidates"]
 

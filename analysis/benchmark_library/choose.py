@@ -5,19 +5,15 @@ the sum of differences in hardness, in the logarithm of its size, and of class. 
 for. Of each family the smallest closed candidate is curated. MIPLIB 2017 is the model; its choice is a program, too.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from analysis.benchmark_library.solve import read_journal
 from ratt_opt.benchmark.instances.instance import read_document, read_instance
 from ratt_opt.benchmark.instances.library import INDEX, BenchmarkLibrary, hash_of
 from ratt_opt.benchmark.proofs.records import submit_record
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 __all__ = ["ChoiceParams", "build", "hardness_of"]
 

@@ -1,30 +1,24 @@
 """Solve candidates by several solvers, certify what is found, and keep one line a candidate in a journal."""
 
-from __future__ import annotations
-
 import json
 import math
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import ratt_opt as ro
+from analysis.benchmark_library.candidates import Candidate
 from ratt_opt.attack.edge_cuts.fewest import fewest_cuts
 from ratt_opt.benchmark.instances.forms import SumInput, TableInput
-from ratt_opt.benchmark.instances.instance import read_document, write_document
+from ratt_opt.benchmark.instances.instance import BenchmarkInstance, read_document, write_document
 from ratt_opt.benchmark.proofs.answers import only_plan, worth_of
 from ratt_opt.benchmark.proofs.verification import ENUMERATION, proved_bound, stated_problem, verify_record
 from ratt_opt.certificates.edge_cuts import certify_cuts
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 from ratt_opt.planners import scenario_program, sensing_only
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from analysis.benchmark_library.candidates import Candidate
-    from ratt_opt.benchmark.instances.instance import BenchmarkInstance
 
 __all__ = ["JOURNAL", "SolveParams", "read_journal", "solve_all"]
 

@@ -1,19 +1,15 @@
 """Plans improved by exchanges of one robot's element against exact worst cases: a rival without bounds."""
 
-from __future__ import annotations
-
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from ratt_opt import Problem
-    from ratt_opt._validation import BoolArray, IntArray
+from ratt_opt import Problem
+from ratt_opt._validation import BoolArray, IntArray
 
 __all__ = ["RivalBracket", "exchanges"]
 

@@ -6,22 +6,18 @@ Walteros, Mathematical Programming Computation (2022), whose file may not be shi
 ``bus494.dat``. A row with two published values contradicts itself.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import networkx as nx
 import numpy as np
 
 from analysis.tables import print_table
 from ratt_opt import fewest_cuts, smallest_largest_group
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 SHARES = (0.05, 0.10, 0.25, 0.50)
 

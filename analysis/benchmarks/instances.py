@@ -3,8 +3,6 @@
 The golden corpus, the rivals and the page of open problems draw their problems here, so names and numbers never change.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

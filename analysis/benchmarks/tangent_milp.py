@@ -5,23 +5,18 @@ mixture of all elements, then at each plan that HiGHS returns. If an attack leav
 says which of them wins. The library attacks the plans exactly. HiGHS's bound is its claim: nothing checks it.
 """
 
-from __future__ import annotations
-
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import Any
 
 import highspy
 import numpy as np
 
 import ratt_opt as ro
 from analysis.benchmarks.exchanges import RivalBracket
+from ratt_opt import Problem
+from ratt_opt._validation import FloatArray, IntArray
 from ratt_opt.highs import silent_solver
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from ratt_opt import Problem
-    from ratt_opt._validation import FloatArray, IntArray
 
 __all__ = ["attacked_exchanges", "tangent_milp"]
 

@@ -1,7 +1,5 @@
 """Limits that count seconds of the processor, for every benchmark."""
 
-from __future__ import annotations
-
 import time
 
 __all__ = ["count_processor_time"]

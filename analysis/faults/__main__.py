@@ -1,7 +1,5 @@
 """The command line of the campaign."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import math
@@ -9,17 +7,15 @@ import shutil
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import analysis.faults
 from analysis.faults.campaign import Campaign
 from analysis.faults.kinds import KINDS
 from ratt_opt._files import output_directory, write_json
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 REPORT = "faults.json"
 OUTCOMES = ("done", "half proved", "refused", "interrupted", "fault")

@@ -1,18 +1,16 @@
 """Runs of cases: in this process, timed, and every surprise noted as a fault."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os
 import signal
 import tempfile
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic, process_time, sleep
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +20,6 @@ from ratt_opt.cli import run
 from ratt_opt.studies.cases import Case, Seeds
 from ratt_opt.studies.store import open_journal
 from ratt_opt.studies.study import Study, run_trial
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = [
     "LONGEST",

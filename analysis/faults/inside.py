@@ -1,32 +1,24 @@
 """Kinds of cases that run in this process: what each does to the program, and what must hold afterwards."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json
 import resource
 import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+import numpy as np
 from flint import arb
 
 import ratt_opt as ro
-from analysis.faults.campaign import LONGEST, MISSION, STUDY, Campaign, command, hang
+from analysis.faults.campaign import LONGEST, MISSION, STUDY, Campaign, Kind, command, hang
 from analysis.faults.damage import ODD, damaged
 from analysis.faults.results import check_results, earlier_results
 from analysis.faults.truth import truth
 from ratt_opt.cli import run
 from ratt_opt.studies.store import open_journal
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    import numpy as np
-
-    from analysis.faults.campaign import Kind
 
 __all__ = ["INSIDE"]
 

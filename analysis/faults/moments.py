@@ -7,25 +7,21 @@ to its return, in seconds of the processor.
 The exit code is 1 if one raised, came back as if nothing had been, without a bracket, or later than ``--within``.
 """
 
-from __future__ import annotations
-
 import argparse
 import signal
 import threading
 from collections import Counter
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from time import process_time, sleep
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import networkx as nx
 import numpy as np
 
 import ratt_opt as ro
 from ratt_opt.running.interrupts import interrupt_main_thread
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
 
 __all__ = ["Moment", "interrupted_after", "is_answered", "searches"]
 

@@ -1,7 +1,5 @@
 """Kinds of cases that need processes of their own: kills, lost workers, interrupts from the start on, streams."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal
@@ -9,18 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 from time import monotonic, sleep
-from typing import TYPE_CHECKING
 
-from analysis.faults.campaign import LONGEST, SWEEP, Campaign, command, start_clock
+import numpy as np
+
+from analysis.faults.campaign import LONGEST, SWEEP, Campaign, Kind, command, start_clock
 from analysis.faults.results import check_results, earlier_results
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.store import open_journal, read_table
 from ratt_opt.studies.study import run_trial
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from analysis.faults.campaign import Kind
 
 __all__ = ["PROCESSES", "sweep"]
 

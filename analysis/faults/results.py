@@ -1,18 +1,12 @@
 """Checks of a folder of results, however the run ended that wrote into it."""
 
-from __future__ import annotations
-
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import ratt_opt as ro
+from analysis.faults.campaign import Campaign
 from ratt_opt._files import MIXED
 from ratt_opt.report.write import FILES
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from analysis.faults.campaign import Campaign
 
 __all__ = ["check_results", "earlier_results"]
 

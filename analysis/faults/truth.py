@@ -4,16 +4,12 @@ Shares nothing with the library, whose searches refuse some of what a file may s
 fractions for matrices of two coordinates, balls of ``BITS`` bits for roots and logarithms.
 """
 
-from __future__ import annotations
-
+from collections.abc import Iterable, Iterator
 from functools import cache, reduce
 from itertools import chain, combinations, product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flint import arb, ctx, fmpq
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
 
 __all__ = ["truth"]
 

@@ -10,8 +10,6 @@ differs. Seconds, and limits, are of the processor. ``--sample S``: cases whose 
 ``--history FILE`` adds the table to a file, with the commit.
 """
 
-from __future__ import annotations
-
 import argparse
 import subprocess
 import sys

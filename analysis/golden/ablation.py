@@ -8,18 +8,14 @@ seconds, without over with. Rows are appended as they end, a file for each ``--s
 ``--twice`` measures a second time.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from analysis.golden.comparison import Rows
 from analysis.golden.workers import in_workers
-
-if TYPE_CHECKING:
-    from analysis.golden.comparison import Rows
 
 LONG = 0.2
 """Recorded seconds from which a case shows what a part is worth."""

@@ -1,17 +1,13 @@
 """Two measurements of the corpus beside each other, a line for each part."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from analysis.tables import read_csv
 from ratt_opt._rounding import relative_gap
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-    from pathlib import Path
 
 __all__ = ["Rows", "apart", "compared", "differing", "lost", "read_rows"]
 

@@ -1,24 +1,19 @@
 """The cases of the corpus: which problem, which search, which limits. Names never change their meaning."""
 
-from __future__ import annotations
-
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 
 import ratt_opt as ro
 from analysis.benchmarks.instances import SETTINGS, SHARES, budget_grid, network_problem, team
 from analysis.golden.unusual import UNUSUAL, unusual_problem
+from ratt_opt import Problem
 from ratt_opt.scenario.networks import NETWORK_FAMILIES
 from ratt_opt.setfunctions.criteria.names import CLASSES as CRITERIA
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from ratt_opt import Problem
 
 __all__ = ["CRITERIA", "PARTS", "Case", "cases", "get_case"]
 

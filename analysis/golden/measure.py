@@ -1,27 +1,21 @@
 """Answers of the searches on one case of the corpus: both ends, nodes, processor seconds, and the proof's size."""
 
-from __future__ import annotations
-
 import tempfile
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from time import process_time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from zlib import crc32
 
 import numpy as np
 
 import ratt_opt as ro
 from analysis.benchmarks.instances import warm_up
-from analysis.golden.corpus import CRITERIA, get_case
+from analysis.golden.corpus import CRITERIA, Case, get_case
+from ratt_opt import MaxMinResult, Problem
+from ratt_opt._validation import IntArray
 from ratt_opt.errors import UndecidedError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from analysis.golden.corpus import Case
-    from ratt_opt import MaxMinResult, Problem
-    from ratt_opt._validation import IntArray
 
 __all__ = ["GAP", "measured", "measured_by_name", "warm"]
 

@@ -1,9 +1,8 @@
 """Parts of the engine that can be left out to see what each is worth; brackets stay true without any of them."""
 
-from __future__ import annotations
-
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from unittest.mock import patch
 
 from analysis.schedule import TABLES
@@ -20,9 +19,6 @@ from ratt_opt.solvers.maxmin.restarts import RestartedSearch
 from ratt_opt.solvers.maxmin.small_groups import SmallGroups
 from ratt_opt.solvers.maxmin.stages.schedule import BOUND_STAGES, PLAN_STAGES
 from ratt_opt.solvers.maxmin.winners import GroupProofs
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["ATTACK_SWITCHES", "PLAN_SWITCHES", "without"]
 

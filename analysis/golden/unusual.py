@@ -1,20 +1,15 @@
 """Problems unlike the benchmark's: degenerate, weighted, protected, large, of other dimensions, with user functions."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import networkx as nx
 import numpy as np
 
 import ratt_opt as ro
+from ratt_opt import Problem, SetFunction
+from ratt_opt._validation import FloatArray
 from ratt_opt.setfunctions.criteria.registry import CRITERIA
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ratt_opt import Problem, SetFunction
-    from ratt_opt._validation import FloatArray
 
 __all__ = ["UNUSUAL", "unusual_problem"]
 

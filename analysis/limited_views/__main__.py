@@ -1,7 +1,5 @@
 """All studies of limited views, and their pages: ``python -m analysis.limited_views --trials 60 --out DIR``."""
 
-from __future__ import annotations
-
 import sys
 
 from analysis.limited_views import bite, flights, one_step

@@ -6,24 +6,17 @@ with the longest links in which both bite, and among these the one with the wide
 one, in which every robot reaches every other and sees any distance.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from analysis.limited_views.flights import COMPLETE, UNLIMITED, case_of, scenario_of
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.problem import Problem
 from ratt_opt.solvers.ratt import ratt
+from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry
-from ratt_opt.studies.statistics import column, estimate, select
+from ratt_opt.studies.statistics import Estimate, column, estimate, select
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from ratt_opt.studies.cases import Case, Cell, Seeds
-    from ratt_opt.studies.statistics import Estimate
 
 __all__ = ["BITES", "ENTRY", "LINKS", "REACHES", "STUDY", "chosen", "measured", "shares"]
 

@@ -5,21 +5,16 @@ two robots blinded and four links cut by exact attacks in each step. Plans of te
 ones. The whole run has 60 missions (two minutes of the processor); ``--quick`` has the first twenty.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from analysis.limited_views.flights import case_of, measured
 from analysis.limited_views.verdicts import outcome, relative_change
 from ratt_opt.studies.engine import run
 from ratt_opt.studies.statistics import column
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
 
 __all__ = ["STUDY", "TRIALS", "said"]
 

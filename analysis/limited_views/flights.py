@@ -3,26 +3,18 @@
 ``python -m analysis.limited_views --trials 60 --out DIR``; ``--only limited_views_main`` flies the main cell alone.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ratt_opt._validation import BoolArray
+from ratt_opt.missions.mission import Mission
 from ratt_opt.missions.players.planners import MaxMinPlanner
 from ratt_opt.missions.run import run_mission
 from ratt_opt.scenario.limited_view import SENSORS, limited_view_scenario
+from ratt_opt.scenario.model import Scenario
 from ratt_opt.scenario.sensor import Sensor, measure
-from ratt_opt.studies.cases import Case
+from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from ratt_opt._validation import BoolArray
-    from ratt_opt.missions.mission import Mission
-    from ratt_opt.missions.players.planners import Planner
-    from ratt_opt.scenario.model import Scenario
-    from ratt_opt.studies.cases import Cell, Seeds
 
 __all__ = [
     "COMPLETE",
@@ -43,7 +35,7 @@ STEPS = 20
 """Steps of a mission. Windows are the first and the last half, which share no step."""
 PLANNERS = ("greedy", "ratt", "refined", "maxmin", "myopic")
 """Planners by the names of ``run_mission``; all are compared with the first."""
-SEARCHED: dict[str, Planner] = {"maxmin": MaxMinPlanner(gap=1e-3, max_nodes=10)}
+SEARCHED: dict[str, MaxMinPlanner] = {"maxmin": MaxMinPlanner(gap=1e-3, max_nodes=10)}
 """Limited by nodes, not by time, so that missions are the same on every machine."""
 METRICS = ("rmse", "rmse_first_half", "rmse_last_half", "largest", "unseen", "longest")
 NOISES = {**SENSORS, "coarse": Sensor()}

@@ -1,19 +1,13 @@
 """Single plans under the exact worst attack, beside the best possible value, in some cells of the study."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from analysis.limited_views.flights import COMPLETE, PLANNERS, case_of, scenario_of
 from ratt_opt.attack.exact import worst_case_attack
 from ratt_opt.missions.players.planners import elements_of, get_planner, planned_with
 from ratt_opt.scenario.planner_world import scenario_world
 from ratt_opt.solvers.maxmin.solve import solve_maxmin
+from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from ratt_opt.studies.cases import Case, Cell, Seeds
 
 __all__ = ["ENTRY", "STUDY", "measured"]
 

@@ -1,16 +1,11 @@
 """Paired intervals as words: what pays, what costs, and what makes no visible difference."""
 
-from __future__ import annotations
-
 from enum import Enum
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ratt_opt.studies.statistics import Estimate, estimate
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
 
 __all__ = ["Outcome", "outcome", "relative_change"]
 

@@ -1,7 +1,5 @@
 """All figures and numbers of Section VI: ``python -m analysis.paper --trials T --out DIR``."""
 
-from __future__ import annotations
-
 import sys
 
 from analysis.paper import caa, large_scale, qualitative, small_scale

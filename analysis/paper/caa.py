@@ -3,11 +3,10 @@
 ``python -m analysis.paper.caa --out DIR``
 """
 
-from __future__ import annotations
-
 import sys
+from collections.abc import Mapping, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
@@ -16,10 +15,6 @@ from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.plots import new_figure, save
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
 N_ROBOTS = 5
 N_LINKS = N_ROBOTS * (N_ROBOTS - 1) // 2

@@ -1,17 +1,12 @@
 """Claims of the paper about its figures, each tested as a statistic on our results."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 
 from analysis import claims
 from analysis.claims import Claim
 from ratt_opt.studies.statistics import Verdict, column, select
 from ratt_opt.studies.store import read_table
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
 
 __all__ = ["CLAIMS", "write_claims"]
 

@@ -1,18 +1,12 @@
 """The two quantitative figures of the paper have one form: panels of budgets, bars of planners, two metrics."""
 
-from __future__ import annotations
-
+from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
 
+from ratt_opt.studies.cases import Case
 from ratt_opt.studies.plots import bars, new_figure, save
 from ratt_opt.studies.statistics import Estimate, column, estimate, players, select
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from ratt_opt.studies.cases import Case
 
 __all__ = ["draw_comparison"]
 

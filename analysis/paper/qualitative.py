@@ -3,13 +3,15 @@
 ``python -m analysis.paper.qualitative --trials 10 --out DIR``
 """
 
-from __future__ import annotations
-
 import json
 import sys
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
 from analysis.paper.qualitative_figure import common_limits, draw_scene, legend, squared_error
+from ratt_opt._validation import IntArray
+from ratt_opt.problem import Attack
 from ratt_opt.studies.cases import Case, Cell, Seeds
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.comparison import DRAWS
@@ -17,13 +19,6 @@ from ratt_opt.studies.instance import Instance
 from ratt_opt.studies.plots import new_figure, save
 from ratt_opt.studies.statistics import select
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from ratt_opt._validation import IntArray
-    from ratt_opt.problem import Attack
 
 STUDY = Study(
     name="qualitative",

@@ -1,16 +1,11 @@
 """One scene as the paper draws it: dots and arrows for robots, pentagrams, squares and ellipses for targets."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 __all__ = ["common_limits", "draw_scene", "legend", "squared_error"]
 

@@ -3,19 +3,14 @@
 ``python -m analysis.paper.small_scale --trials 10 --out DIR``
 """
 
-from __future__ import annotations
-
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from analysis.paper.comparison_figure import draw_comparison
 from ratt_opt.studies.cases import Case
 from ratt_opt.studies.command import Entry, main
 from ratt_opt.studies.study import Study
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
 
 STUDY = Study(
     name="small_scale",

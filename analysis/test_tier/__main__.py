@@ -1,17 +1,15 @@
 """The command line: measure the tests, choose the short tier, make faults, and show what finds them."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import os
 import subprocess
 import sys
 from collections import Counter
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from analysis.test_tier.campaign import Campaign, Measured, draw, read_rows
 from analysis.test_tier.choose import (
@@ -26,9 +24,6 @@ from analysis.test_tier.choose import (
 )
 from analysis.test_tier.reached_lines import Reach, collect, load, merged, save
 from analysis.test_tier.tree import ROOT, Tree
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 LIST = ROOT / "tests" / "short_tier.txt"
 COSTS, REACH = "costs.csv", "reach.json"

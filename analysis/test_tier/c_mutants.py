@@ -1,14 +1,9 @@
 """Small faults of C, of the same kinds, in the sources of the compiled loops: by what operators look like there."""
 
-from __future__ import annotations
-
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 from analysis.test_tier.mutants import Mutant
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["c_mutants"]
 

@@ -1,25 +1,19 @@
 """Faults drawn from all families, and which tier of the tests finds them."""
 
-from __future__ import annotations
-
 import csv
 import random
 from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from itertools import takewhile
 from pathlib import Path, PurePosixPath
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from analysis.test_tier.c_mutants import c_mutants
+from analysis.test_tier.choose import Cost
 from analysis.test_tier.mutants import Mutant, python_mutants
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
-
-    from analysis.test_tier.choose import Cost
-    from analysis.test_tier.reached_lines import Reach
-    from analysis.test_tier.tree import Tree
+from analysis.test_tier.reached_lines import Reach
+from analysis.test_tier.tree import Tree
 
 __all__ = ["Campaign", "Measured", "Row", "draw", "family_of", "read_rows"]
 

@@ -6,22 +6,17 @@ second do well. Source: M. Sviridenko, "A note on maximizing a submodular set fu
 constraint", Operations Research Letters 32 (2004).
 """
 
-from __future__ import annotations
-
 import csv
 import heapq
 import math
 from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-    from pathlib import Path
-
-    from analysis.test_tier.reached_lines import Reach
+from analysis.test_tier.reached_lines import Reach
 
 __all__ = [
     "Cost",
@@ -61,7 +56,7 @@ class Cost:
     seconds: float
     shared: float = 0.0
 
-    def __add__(self, other: Cost) -> Cost:
+    def __add__(self, other: "Cost") -> "Cost":
         """The cost of more cases of the same function."""
         return Cost(self.tests + other.tests, self.seconds + other.seconds, max(self.shared, other.shared))
 

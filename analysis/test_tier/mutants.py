@@ -4,15 +4,10 @@ Source: A. J. Offutt et al., "An experimental determination of sufficient mutant
 kinds the relational, arithmetic, logical and absolute-value ones suffice; dropped statements and constants are added.
 """
 
-from __future__ import annotations
-
 import ast
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import accumulate
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 __all__ = ["Mutant", "python_mutants"]
 

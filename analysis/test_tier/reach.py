@@ -4,23 +4,19 @@
 ``TIER_FOLDER`` names. Processes that a test starts are followed, too.
 """
 
-from __future__ import annotations
-
 import os
 import resource
 import sys
 import time
 from collections import defaultdict
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from coverage import Coverage
 
 from analysis.test_tier.choose import Cost, write_costs
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 CONTEXT = "TIER_TEST"
 """Environment variable that tells processes which test started them."""

@@ -4,21 +4,17 @@ A function in C counts as reached by the tests that reach a line of Python which
 C that calls it. The same holds for constants and classes, whose lines run once, at import.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import re
 from collections import defaultdict
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING, TypeAlias
+from pathlib import Path
+from typing import TypeAlias
 
 from analysis.test_tier.c_mutants import NO_CODE
-
-if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator, Mapping
-    from pathlib import Path
 
 __all__ = ["Lines", "Reach", "collect", "load", "merged", "save"]
 

@@ -1,20 +1,15 @@
 """A copy of the repository in which faults are made, one after another, and its tests run."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from analysis.test_tier.mutants import Mutant
+from analysis.test_tier.mutants import Mutant
 
 __all__ = ["ROOT", "Tree"]
 

@@ -4,8 +4,6 @@
 seconds}, {function: cases}]``. It answers each with a line, ``[how it ended, the last test]``.
 """
 
-from __future__ import annotations
-
 import importlib
 import json
 import os
