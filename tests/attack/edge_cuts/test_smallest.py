@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt.attack.edge_cuts import cut_search
-from ratt_opt.attack.edge_cuts.smallest import bound_soon
+from ratt_opt.attack.edge_cuts.smallest import PARAMS, bound_soon
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
+from tests.attack.stages.test_few_attacks import sparse_network
 from tests.strategies import SEEDED, random_graph, random_problem
 
 
@@ -205,3 +206,18 @@ def test_ratt_asks_no_integer_program_and_depends_on_nothing_before(n_robots, cu
     first = ro.ratt(problem)
     found = ro.smallest_largest_group(problem.communication, problem.alpha_c, method="spreading", time_limit=1.0)
     assert ro.ratt(problem).alpha_cs == first.alpha_cs >= n_robots - found.upper
+
+
+def test_few_cuts_of_large_sparse_networks_are_tried_one_by_one():
+    rng = np.random.default_rng(371)
+    graph = sparse_network(rng, 60, 3)
+    threat = Threat(ro.Problem(ro.Modular(np.ones(60)), np.arange(60), graph, 0, 2).communication, 0, 2)
+    assert threat.n_attacks <= PARAMS.one_by_one
+    truth = min(
+        max(len(group) for group in threat.graph.groups(cut)) for cut in combinations(sorted(threat.graph.links), 2)
+    )
+    found = ro.smallest_largest_group(graph, 2)
+    assert (found.lower, found.upper) == (truth, truth)
+    soon = ro.smallest_largest_group(graph, 2, max_nodes=5)
+    assert soon.lower <= truth <= soon.upper
+    assert ro.smallest_largest_group(graph, 2, time_limit=0).upper >= truth
