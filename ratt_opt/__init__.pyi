@@ -5,6 +5,8 @@ from ._version import __version__ as __version__
 
 # == The main job
 from .main_job.bound import bound as bound
+from .main_job.job_params import JobParams as JobParams
+from ._params import read_params as read_params
 from .main_job.result import BoundReport as BoundReport, PlanAssessment as PlanAssessment
 from .report.map_style import MapStyle as MapStyle
 from .budget import Stop as Stop

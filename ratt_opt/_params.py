@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -68,30 +68,28 @@ def _with(default: P, document: dict[str, Any], place: str) -> P:
     for name in document:
         if name not in names:
             raise InputError(place, f"must name some of {', '.join(names)}", name)
+    kinds = get_type_hints(type(default))
     return replace(
-        default, **{name: _value(getattr(default, name), given, f"{place}.{name}") for name, given in document.items()}
+        default,
+        **{
+            name: _value(getattr(default, name), given, f"{place}.{name}", kinds[name])
+            for name, given in document.items()
+        },
     )
 
 
-def _value(default: Any, given: Any, place: str) -> Any:
+def _value(default: Any, given: Any, place: str, kind: Any) -> Any:
     if is_dataclass(default) and not isinstance(default, type):
         if not isinstance(given, dict):
             raise InputError(place, "must be a table", given)
         return _with(default, given, place)
     try:
-        value = TypeAdapter(_kind(default)).validate_python(given)
+        value = TypeAdapter(kind).validate_python(given)
     except ValidationError as error:
         raise InputError(place, f"must be like {default!r} ({error.errors()[0]['msg']})", given) from None
     if not _is_sound(value):
         raise InputError(place, "must be at least 0 and finite", given)
     return value
-
-
-def _kind(default: Any) -> Any:
-    if not isinstance(default, tuple):
-        return type(default)
-    first = default[0]
-    return tuple[tuple[int, int], ...] if isinstance(first, tuple) else tuple[type(first), ...]  # type: ignore[misc]
 
 
 def _is_sound(value: Any) -> bool:

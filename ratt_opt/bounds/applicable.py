@@ -14,10 +14,12 @@ from ratt_opt.bounds.guarantees import (
     sensing_only_bound,
     theorem1_bound,
 )
+from ratt_opt.bounds.params import DEFAULT
 from ratt_opt.bounds.survivors import largest_survivor_group, survivor_bound
 from ratt_opt.problem import check_problem
 
 if TYPE_CHECKING:
+    from ratt_opt.bounds.params import BoundParams
     from ratt_opt.budget import Budget
     from ratt_opt.problem import Problem
 
@@ -29,7 +31,13 @@ SENSING_ONLY, REMARK_1, ALL_BAIT = "sensing only", "Remark 1", "all bait"
 
 
 def all_guarantees(
-    problem: Problem, alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None, budget: Budget | None = None
+    problem: Problem,
+    alpha_cs: int,
+    *,
+    k: Curvatures = None,
+    c: Curvatures = None,
+    budget: Budget | None = None,
+    params: BoundParams = DEFAULT,
 ) -> dict[str, Guarantee]:
     """The guarantees that apply to RATT's plan for one problem, strongest first.
 
@@ -39,10 +47,11 @@ def all_guarantees(
     k : curvature, for a submodular objective; c : total curvature; over feasible sets, numbers or brackets
     budget : an outer search's budget: after it, groups are cut by simpler rules, and guarantees that rest on them are
         weaker
+    params : how groups are cut
     """
     missing = inapplicable_guarantees(check_problem(problem), alpha_cs)
     seeing = problem.n_robots - min(problem.alpha_s, problem.n_robots - len(problem.protected_robots))
-    group_size, survivors = achievable_group_size(problem, budget), largest_survivor_group(problem)
+    group_size, survivors = achievable_group_size(problem, budget, params), largest_survivor_group(problem)
     found: dict[str, Guarantee] = {}
     if group_size <= 1:
         found[OPTIMAL] = group_size_bound(group_size, c=1.0)

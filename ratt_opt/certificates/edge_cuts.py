@@ -98,14 +98,18 @@ def certify_cuts(
 
 
 def certify_size_if_possible(
-    threat: Threat, found: LargestGroup | None, path: Path, budget: Budget
+    threat: Threat,
+    found: LargestGroup | None,
+    path: Path,
+    budget: Budget,
+    params: CertificateParams = DEFAULT,
 ) -> CutsCertification:
     """:func:`certify_cuts` for the smallest largest group that a threat leaves, or why there is no certificate."""
     if found is None:
         return CutsCertification(why_not="the smallest largest group was not searched")
     together = threat.protected_links
     try:
-        verified = certify_cuts(threat.graph, found, path, protected_links=together, budget=budget)
+        verified = certify_cuts(threat.graph, found, path, protected_links=together, budget=budget, params=params)
     except (InputError, ProofError, UndecidedError, MemoryError) as error:
         reason = "not enough memory" if isinstance(error, MemoryError) else str(error)
         return CutsCertification(why_not=reason)

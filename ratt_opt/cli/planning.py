@@ -24,10 +24,11 @@ from ratt_opt.errors import ProofError
 from ratt_opt.running.progress import Step
 
 if TYPE_CHECKING:
+    from ratt_opt.certificates.params import CertificateParams
+    from ratt_opt.main_job.job_params import JobParams
     from ratt_opt.main_job.result import BoundReport
     from ratt_opt.scenario.information_input import InformationInput
     from ratt_opt.scenario.model import Scenario
-    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
 __all__ = ["bound", "demo"]
 
@@ -84,7 +85,7 @@ def bound(
     ] = None,
     params: Annotated[
         Path | None,
-        typer.Option("--params", help="TOML: parameters of the search for the best plan that are not as by default."),
+        typer.Option("--params", help="TOML: parameters that are not as by default, such as [search.rows]."),
     ] = None,
     certificate: CertificateFlag = True,
     as_json: JsonFlag = False,
@@ -95,10 +96,10 @@ def bound(
     An interrupt (Ctrl-C) leaves a report of what is proved so far, marked so, and exits with 130.
     """
     from ratt_opt._params import read_params
+    from ratt_opt.main_job.job_params import JobParams
     from ratt_opt.scenario.files import load_input
-    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
-    chosen = read_params(params, MaxMinParams())
+    chosen = read_params(params, JobParams())
     source = load_input(file)
     shown = {"as_json": as_json, "as_latex": as_latex, "certificate": certificate}
     _bound(source, out, objective, time_limit, gap, guarantees, motion=motion, params=chosen, **shown)
@@ -113,13 +114,14 @@ def _bound(
     guarantees: str = "quick",
     *,
     motion: str | None = None,
-    params: "MaxMinParams | None" = None,
+    params: "JobParams | None" = None,
     certificate: bool,
     as_json: bool,
     as_latex: bool,
 ) -> None:
     from ratt_opt._files import output_directory
     from ratt_opt.main_job.bound import bound as main_job
+    from ratt_opt.main_job.job_params import DEFAULT
     from ratt_opt.main_job.params import SHARES
     from ratt_opt.missions.world import MissionModel
     from ratt_opt.report.tables import report_tables
@@ -131,13 +133,14 @@ def _bound(
     check_limits(gap, time_limit)
     began = monotonic()
     searching = (1 - SHARES.certificate) * time_limit if certificate else time_limit
+    chosen = DEFAULT if params is None else params
     model = None if motion is None else MissionModel(motion=motion, objective=objective)
     asked: dict[str, Any] = {
         "model": model,
         "time_limit": searching,
         "gap": gap,
         "guarantees": guarantees,
-        "params": params,
+        "params": chosen,
     }
     report = main_job(source, objective=objective, **asked)
     left = max(0.0, time_limit - (monotonic() - began))
@@ -147,7 +150,7 @@ def _bound(
     fault: ProofError | None = None
     if wanted:
         with Step("certificate"):
-            report, fault = _certified(report, folder, left)
+            report, fault = _certified(report, folder, left, chosen.certificate)
     if not report.interrupted:
         report, figures = _drawn(report, folder)
         files += figures
@@ -180,7 +183,9 @@ def _drawn(report: "BoundReport", folder: Path) -> "tuple[BoundReport, list[Path
     return replace(report, remarks=(*report.remarks, *remarks)), files
 
 
-def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "tuple[BoundReport, ProofError | None]":
+def _certified(
+    report: "BoundReport", folder: Path, time_limit: float, params: "CertificateParams"
+) -> "tuple[BoundReport, ProofError | None]":
     """The report with its certificate, or why there is none, written over the one in the folder; a fault in our proof.
 
     Raises WorkInterrupted; the report in the folder then says so.
@@ -197,9 +202,10 @@ def _certified(report: "BoundReport", folder: Path, time_limit: float) -> "tuple
     (folder / CUTS).unlink(missing_ok=True)  # of an earlier report
     try:
         cuts = certify_size_if_possible(
-            report.problem.threat, report.largest_group, folder / CUTS, budget.part(CUTS_SHARE)
+            report.problem.threat, report.largest_group, folder / CUTS, budget.part(CUTS_SHARE), params
         )
-        proof = certify_if_possible(report.problem, report.optimum, folder / CERTIFICATE, budget, source=report.source)
+        asked: dict[str, Any] = {"source": report.source, "params": params}
+        proof = certify_if_possible(report.problem, report.optimum, folder / CERTIFICATE, budget, **asked)
     except ProofError as error:
         proof, fault = Certification.faulty(error), error
     except KeyboardInterrupt:

@@ -20,6 +20,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
+    from ratt_opt.attack.params import AttackParams
     from ratt_opt.attack.task import AttackResult
     from ratt_opt.budget import Budget
 
@@ -32,11 +33,17 @@ def recommended(plans: Iterable[PlanAssessment]) -> PlanAssessment:
 
 
 def assess(
-    problem: Problem, planner: str, plan: Plan, budget: Budget, known: AttackResult | None = None
+    problem: Problem,
+    planner: str,
+    plan: Plan,
+    budget: Budget,
+    *,
+    known: AttackResult | None = None,
+    params: AttackParams | None = None,
 ) -> PlanAssessment:
     """Attack one plan in the worst way, unless that is ``known``, and describe the team after it."""
-    elements = plan.elements
-    worst = known or worst_case_attack(problem, elements, budget=budget, brief=math.isinf(budget.seconds_left))
+    elements, brief = plan.elements, math.isinf(budget.seconds_left)
+    worst = known or worst_case_attack(problem, elements, budget=budget, brief=brief, params=params)
     seeing, f = problem.best_group(elements, worst.attack), problem.objective
     posterior = None
     if isinstance(f, InformationObjective):
@@ -54,7 +61,9 @@ def assess(
     )
 
 
-def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[str, PlanAssessment]:
+def views_of(
+    problem: Problem, worst: PlanAssessment, budget: Budget, params: AttackParams | None = None
+) -> dict[str, PlanAssessment]:
     """Return a plan under its worst attack, the worst found that spares part of it (if there is time), and no attack.
 
     The bracket of each is still of the plan's worst case: its upper end is the value under the attack shown.
@@ -69,7 +78,7 @@ def views_of(problem: Problem, worst: PlanAssessment, budget: Budget) -> dict[st
     for spared in _spared(problem, worst.worst_case.attack):
         if budget.is_over:
             break
-        attacks.append(worst_case_attack(spared, plan.elements, budget=budget, brief=True).attack)
+        attacks.append(worst_case_attack(spared, plan.elements, budget=budget, brief=True, params=params).attack)
     nexts = sorted((under(attack) for attack in attacks), key=lambda view: view.worst_case.upper)
     return {"worst": worst, **({"next worst": nexts[0]} if nexts else {}), "none": under(Attack())}
 

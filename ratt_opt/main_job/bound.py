@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
 from time import process_time
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, runtime_checkable
 
 from ratt_opt.bounds.applicable import all_guarantees, inapplicable_guarantees
 from ratt_opt.bounds.instance import instance_bound
@@ -17,6 +17,7 @@ from ratt_opt.curvatures.curvature import curvature, total_curvature
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.graph.largest_group.counting import by_caa
 from ratt_opt.main_job.assessment import assess, recommended, views_of
+from ratt_opt.main_job.job_params import DEFAULT, JobParams
 from ratt_opt.main_job.params import QUICK, SHARES
 from ratt_opt.main_job.remarks import omitted_curvatures, omitted_parts, remarks_on_data, remarks_on_params
 from ratt_opt.main_job.result import BoundReport, PlanAssessment
@@ -38,11 +39,15 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import FloatArray
     from ratt_opt.bounds.guarantees import Guarantee
+    from ratt_opt.bounds.params import BoundParams
+    from ratt_opt.certificates.params import CertificateParams
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.curvatures.params import CurvatureParams
     from ratt_opt.missions.players.planners import Planner
     from ratt_opt.scenario.planner_world import PlannerWorld
-    from ratt_opt.solvers.maxmin.params import MaxMinParams
     from ratt_opt.solvers.result import MaxMinResult
+
+    Attacked: TypeAlias = Callable[..., PlanAssessment]
 
 __all__ = ["bound"]
 
@@ -73,7 +78,7 @@ def bound(
     progress: Callable[[str], None] | None = None,
     guarantees: str = "quick",
     planners: Mapping[str, Planner] | None = None,
-    params: MaxMinParams | None = None,
+    params: JobParams = DEFAULT,
 ) -> BoundReport:
     """Plan, find the worst attack, bracket the optimum, prove it and list the guarantees of one scenario.
 
@@ -96,7 +101,7 @@ def bound(
         processor at most, ``"full"`` up to three quarters of the time left, ``"none"`` leaves them out
     planners : planners of your own by name, ``f(problem)`` or ``f(problem, world)`` as in missions: their plans are
         attacked too, and stand beside the others in every table and figure. They take what time they take
-    params : of the search for the best plan (:func:`solve_maxmin`); a remark says which are not as by default
+    params : of searches, attacks, guarantees and certificates; a remark says which are not as by default
 
     Raises
     ------
@@ -105,7 +110,7 @@ def bound(
     """
     check_limits(gap, time_limit)
     planners = planners or {}
-    _check_names(guarantees, planners)
+    _check_asked(guarantees, planners, params)
     began, given = datetime.now(UTC), scenario_or_problem
     problem, source = _problem_of(given, objective, model)
     whole, steps, busy_since = Budget(time_limit), Steps(progress), process_time()
@@ -115,25 +120,26 @@ def bound(
         single = problem.objective.singletons()
         largest = by_caa(problem.threat) if problem.threat.links_alike else largest_group_in_share(problem, budget)
         alpha_cs = problem.n_robots - largest.lower
-        robust = _planned(problem, alpha_cs, single, budget)
-        baselines = undisturbed(budget, lambda: tuple(_baselines(problem, single, budget)))
+        attacked = partial(assess, problem, params=params.attack)
+        robust = _planned(problem, alpha_cs, single, budget, attacked)
+        baselines = undisturbed(budget, lambda: tuple(_baselines(problem, single, budget, attacked)))
         seen = _world_of(given, model, problem) if planners else None
-        baselines += tuple(_own_plans(problem, planners, seen, budget))
+        baselines += tuple(_own_plans(problem, planners, seen, budget, attacked))
     with steps("the best possible plan"):
-        search = partial(solve_maxmin, problem, gap=gap, progress=steps.search_line, alpha_cs=alpha_cs, params=params)
-        optimum, best = _best(problem, search, budget)
+        told: dict[str, Any] = {"gap": gap, "progress": steps.search_line, "alpha_cs": alpha_cs}
+        optimum, best = _best(partial(solve_maxmin, problem, params=params.search, **told), budget, attacked)
     with steps("other attacks on the recommended plan"):
         shown, part = recommended((robust, best, *baselines)), budget.part(SHARES.attack)
-        views = undisturbed(budget, lambda: views_of(problem, shown, part))
+        views = undisturbed(budget, lambda: views_of(problem, shown, part, params.attack))
     with steps("curvature and guarantees"):
         k = c = None
         sure: dict[str, Guarantee] = {}
         if guarantees != "none":
             rest = QUICK.within(budget, process_time() - busy_since) if guarantees == "quick" else budget
-            k, c = undisturbed(budget, lambda: _curvatures(problem, rest.part(SHARES.curvature)))
-            sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, k=k, c=c))
+            k, c = undisturbed(budget, lambda: _curvatures(problem, rest.part(SHARES.curvature), params.curvatures))
+            sure = undisturbed(budget, lambda: _guarantees(problem, robust, alpha_cs, rest, params.bounds, k=k, c=c))
     with steps("certificate"):
-        proof, failure = _certified(problem, optimum, certificate, whole, source)
+        proof, failure = _certified(problem, optimum, certificate, whole, source=source, params=params.certificate)
     report = BoundReport(
         problem=problem,
         alpha_cs=alpha_cs,
@@ -160,7 +166,7 @@ def bound(
     return _delivered(report.with_certificate(proof), failure)
 
 
-def _remarks(problem: Problem, params: MaxMinParams | None, given: HasProblem | Problem) -> tuple[str, ...]:
+def _remarks(problem: Problem, params: JobParams, given: HasProblem | Problem) -> tuple[str, ...]:
     of_scenario = scenario_remarks(given) if isinstance(given, Scenario) else ()
     return remarks_on_data(problem) + remarks_on_params(params) + of_scenario
 
@@ -173,28 +179,36 @@ def _delivered(report: BoundReport, failure: ProofError | None) -> BoundReport:
     raise failure
 
 
-def _planned(problem: Problem, alpha_cs: int, single: FloatArray, budget: Budget) -> PlanAssessment:
+def _planned(problem: Problem, alpha_cs: int, single: FloatArray, budget: Budget, attacked: Attacked) -> PlanAssessment:
     """RATT's plan under attack; ``alpha_cs`` : what the link attacks are worth; ``single`` (E,) individual values."""
     plan = replace(bait_and_greedy(problem, problem.alpha_s + alpha_cs, budget, single), alpha_cs=alpha_cs)
-    return undisturbed(budget, lambda: assess(problem, "ratt", plan, budget.part(SHARES.attack)))
+    return undisturbed(budget, lambda: attacked("ratt", plan, budget.part(SHARES.attack)))
 
 
-def _best(problem: Problem, search: Callable[..., MaxMinResult], budget: Budget) -> tuple[MaxMinResult, PlanAssessment]:
+def _best(
+    search: Callable[..., MaxMinResult], budget: Budget, attacked: Attacked
+) -> tuple[MaxMinResult, PlanAssessment]:
     """The search for the best plan, and that plan under attack."""
     optimum = undisturbed(budget, lambda: search(budget=budget.part(SHARES.optimum)))
     found = Plan(elements=optimum.elements, evaluations=optimum.evaluations)
-    known = partial(assess, problem, "maxmin", found, known=optimum.worst_case)
+    known = partial(attacked, "maxmin", found, known=optimum.worst_case)
     return optimum, undisturbed(budget, lambda: known(budget=budget.part(SHARES.attack)))
 
 
 def _certified(
-    problem: Problem, optimum: MaxMinResult, path: str | Path | None, budget: Budget, source: object
+    problem: Problem,
+    optimum: MaxMinResult,
+    path: str | Path | None,
+    budget: Budget,
+    *,
+    source: object,
+    params: CertificateParams,
 ) -> tuple[Certification, ProofError | None]:
     """The certificate or why there is none, and the fault that the verifier found in our own proof."""
     if budget.stop() is Stop.INTERRUPTED:
         return INTERRUPTED, None
     try:
-        return certify_if_possible(problem, optimum, path, budget, source=source), None
+        return certify_if_possible(problem, optimum, path, budget, source=source, params=params), None
     except ProofError as failure:
         return Certification.faulty(failure), failure
     except KeyboardInterrupt:
@@ -228,23 +242,27 @@ def _world_of(given: HasProblem | Problem, model: MissionModel | None, problem: 
     return scenario_world(given, problem) if model is None else first_world(given, model)
 
 
-def _baselines(problem: Problem, single: FloatArray, budget: Budget) -> Iterator[PlanAssessment]:
+def _baselines(problem: Problem, single: FloatArray, budget: Budget, attacked: Attacked) -> Iterator[PlanAssessment]:
     plans = {
         "greedy": bait_and_greedy(problem, 0, budget, single),
         "myopic": bait_and_greedy(problem, problem.n_robots, budget, single),
         "random": random_plan(problem, seed=SHARES.seed),
     }
     for name, plan in plans.items():
-        yield assess(problem, name, plan, budget.part(SHARES.attack))
+        yield attacked(name, plan, budget.part(SHARES.attack))
     if not budget.is_over:
         unattacked = nonrobust_search(problem, budget=budget.part(SHARES.nonrobust))
         if unattacked.stop in {Stop.CLOSED, Stop.EXHAUSTED, Stop.GAP}:
             plan = Plan(elements=unattacked.elements, evaluations=unattacked.evaluations)
-            yield assess(problem, "nonrobust_optimum", plan, budget.part(SHARES.attack))
+            yield attacked("nonrobust_optimum", plan, budget.part(SHARES.attack))
 
 
 def _own_plans(
-    problem: Problem, planners: Mapping[str, Planner], world: PlannerWorld | None, budget: Budget
+    problem: Problem,
+    planners: Mapping[str, Planner],
+    world: PlannerWorld | None,
+    budget: Budget,
+    attacked: Attacked,
 ) -> Iterator[PlanAssessment]:
     """The plans of the user's planners under attack; an interrupt ends them. InputError : one returns no plan."""
     for name, planner in planners.items():
@@ -257,12 +275,14 @@ def _own_plans(
         except InputError as error:
             raise InputError(f"planners[{name!r}]: {error.argument}", error.rule, error.value) from None
         plan = Plan(elements=elements, evaluations=cost)
-        yield undisturbed(budget, partial(assess, problem, name, plan, budget.part(SHARES.attack)))
+        yield undisturbed(budget, partial(attacked, name, plan, budget.part(SHARES.attack)))
 
 
-def _check_names(guarantees: str, planners: Mapping[str, Planner]) -> None:
+def _check_asked(guarantees: str, planners: Mapping[str, Planner], params: JobParams) -> None:
     if guarantees not in GUARANTEES:
         raise InputError("guarantees", f"must be {', '.join(GUARANTEES)}", guarantees)
+    if not isinstance(params, JobParams):
+        raise InputError("params", "must be JobParams, such as JobParams(search=...)", type(params).__name__)
     for name, planner in planners.items():
         if name in TAKEN or not (isinstance(name, str) and name.isprintable() and name):
             raise InputError("planners", f"must have names that are none of {', '.join(TAKEN)}", name)
@@ -270,13 +290,14 @@ def _check_names(guarantees: str, planners: Mapping[str, Planner]) -> None:
             raise InputError(f"planners[{name!r}]", "must be a function of the problem", type(planner).__name__)
 
 
-def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Curvature | None]:
+def _curvatures(problem: Problem, budget: Budget, params: CurvatureParams) -> tuple[Curvature | None, Curvature | None]:
     """Curvature (of a submodular criterion) or total curvature over feasible sets, if it can be bracketed."""
     f, owners = problem.objective, problem.robot
+    asked: dict[str, Any] = {"gap": SHARES.curvature_gap, "time_limit": None, "budget": budget, "params": params}
     try:
         if f.is_submodular:
-            return curvature(f, owners, gap=SHARES.curvature_gap, time_limit=None, budget=budget), None
-        return None, total_curvature(f, owners, gap=SHARES.curvature_gap, time_limit=None, budget=budget)
+            return curvature(f, owners, **asked), None
+        return None, total_curvature(f, owners, **asked)
     except InputError:
         if not isinstance(f, InformationObjective):
             raise
@@ -284,13 +305,21 @@ def _curvatures(problem: Problem, budget: Budget) -> tuple[Curvature | None, Cur
 
 
 def _guarantees(
-    problem: Problem, robust: PlanAssessment, alpha_cs: int, budget: Budget, *, k: Curvature | None, c: Curvature | None
+    problem: Problem,
+    robust: PlanAssessment,
+    alpha_cs: int,
+    budget: Budget,
+    params: BoundParams,
+    *,
+    k: Curvature | None,
+    c: Curvature | None,
 ) -> dict[str, Guarantee]:
     """All that apply to RATT's plan, with the one from this instance's own numbers, strongest first."""
     budget = budget.part(SHARES.curvature)
     if problem.at_most is not None:
         return {}
-    found = all_guarantees(problem, alpha_cs, k=k, c=c, budget=budget)
+    found = all_guarantees(problem, alpha_cs, k=k, c=c, budget=budget, params=params)
     if k or c:
-        found["this instance"] = instance_bound(problem, robust.elements, k=k, c=c, time_limit=None, budget=budget)
+        asked: dict[str, Any] = {"time_limit": None, "budget": budget, "params": params}
+        found["this instance"] = instance_bound(problem, robust.elements, k=k, c=c, **asked)
     return dict(sorted(found.items(), key=lambda item: -item[1]))

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from ratt_opt.curvatures.curvature import Curvature
+    from ratt_opt.main_job.job_params import JobParams
     from ratt_opt.main_job.result import PlanAssessment
     from ratt_opt.problem import Problem
-    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
 __all__ = ["omitted_curvatures", "omitted_parts", "remarks_on_data", "remarks_on_params"]
 
@@ -51,10 +51,10 @@ def omitted_curvatures(guarantees: str, *, k: Curvature | None, c: Curvature | N
     return omitted
 
 
-def remarks_on_params(params: MaxMinParams | None) -> tuple[str, ...]:
+def remarks_on_params(params: JobParams) -> tuple[str, ...]:
     """Name the parameters that are not as by default."""
-    told = "" if params is None else ", ".join(f"{place} = {value}" for place, value in changed(params).items())
-    return (f"the best plan was searched for with {told}",) if told else ()
+    told = ", ".join(f"{place} = {value}" for place, value in changed(params).items())
+    return (f"parameters that are not as by default: {told}",) if told else ()
 
 
 def remarks_on_data(problem: Problem) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from ratt_opt._rounding import down, up
 from ratt_opt.budget import Budget
 from ratt_opt.certificates.certification import CERTIFICATE, CUTS, NOT_ASKED_FOR, Certification
 from ratt_opt.certificates.edge_cuts import certify_size_if_possible
+from ratt_opt.certificates.params import DEFAULT
 from ratt_opt.certificates.write import certify_if_possible
 from ratt_opt.errors import ProofError
 from ratt_opt.findings import AssessedPlan, Findings
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+    from ratt_opt.certificates.params import CertificateParams
     from ratt_opt.report.map_style import MapStyle
 
 __all__ = ["BoundReport", "PlanAssessment"]
@@ -115,7 +117,12 @@ class BoundReport(Findings):
         return report_document(self)
 
     def save(
-        self, directory: str | Path, *, certificate: bool = True, time_limit: float | None = SHARES.saved
+        self,
+        directory: str | Path,
+        *,
+        certificate: bool = True,
+        time_limit: float | None = SHARES.saved,
+        params: CertificateParams = DEFAULT,
     ) -> list[Path]:
         """Write what ``ratt-opt bound`` writes into a folder, which is made if needed, and return the files.
 
@@ -127,6 +134,7 @@ class BoundReport(Findings):
         ----------
         certificate : whether to write one now; the files say why there is none
         time_limit : seconds for that
+        params : how its proofs are found, and the limits within which it is verified
 
         Raises
         ------
@@ -137,11 +145,13 @@ class BoundReport(Findings):
             return write_report(self, directory)
         folder, budget = output_directory(directory), Budget(time_limit)
         try:
-            proof = certify_if_possible(self.problem, self.optimum, folder / CERTIFICATE, budget, source=self.source)
+            proof = certify_if_possible(
+                self.problem, self.optimum, folder / CERTIFICATE, budget, source=self.source, params=params
+            )
         except ProofError as fault:
             write_report(replace(self, certificate=Certification.faulty(fault)), directory)
             raise
-        cuts = certify_size_if_possible(self.problem.threat, self.largest_group, folder / CUTS, budget)
+        cuts = certify_size_if_possible(self.problem.threat, self.largest_group, folder / CUTS, budget, params)
         files = write_report(replace(self.with_certificate(proof), cuts_certificate=cuts), directory)
         return files if cuts.path is None else [*files, cuts.path]
 

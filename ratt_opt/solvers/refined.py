@@ -11,7 +11,7 @@ use up all of the limit, and what it found would be lost.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,6 +28,7 @@ from ratt_opt.setfunctions.information import InformationObjective
 from ratt_opt.solvers.by_values.plan_search import PlanSearch
 from ratt_opt.solvers.maxmin.incumbent import Incumbent, ProvedPlan
 from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.params import MaxMinParams
 from ratt_opt.solvers.maxmin.stages.ties import break_ties
 from ratt_opt.solvers.maxmin.walk import Walk
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
 
     from ratt_opt._validation import IntArray
     from ratt_opt.attack.task import AttackResult
-    from ratt_opt.solvers.maxmin.params import MaxMinParams
 
 __all__ = ["RefinedParams", "RefinedPlan", "refined"]
 
@@ -67,7 +67,7 @@ class RefinedParams:
     best: float = 0.7
     nodes: int = 500_000
     patience: int = 200
-    search: MaxMinParams | None = None
+    search: MaxMinParams = field(default_factory=MaxMinParams)
     last_share: float = 0.08
     last_seconds: float = 0.4
     least_share: float = 0.5

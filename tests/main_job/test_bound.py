@@ -139,7 +139,7 @@ class Counted(ro.Modular):
 def test_without_time_individual_values_are_asked_for_once(robots):
     """Without an overrun of first plans they are what a limit of 0 takes; besides, a few for each plan shown."""
     f = Counted(np.random.default_rng(robots).random(3 * robots))
-    params = with_params(ro.MaxMinParams(), {(ro.MaxMinParams, "first_plans.beyond"): 0.0})
+    params = ro.JobParams(search=with_params(ro.MaxMinParams(), {(ro.MaxMinParams, "first_plans.beyond"): 0.0}))
     ro.bound(ro.Problem(f, np.repeat(np.arange(robots), 3), None, 3, 40), time_limit=0, params=params)
     assert f.asked <= f.n + 40
 

@@ -89,7 +89,7 @@ AT_LEAST_ONE = (
 class MaxMinParams:
     """Parameters of one search for the best plan, algorithm by algorithm; ``replace`` changes some.
 
-    ``solve_maxmin(..., params=params)`` uses them, and ``ratt-opt bound --params FILE`` reads them from TOML.
+    ``solve_maxmin(..., params=params)`` uses them, and ``ratt-opt bound --params FILE`` reads them from ``[search]``.
     """
 
     outcomes: OutcomeListParams = field(default_factory=OutcomeListParams)
