@@ -1,7 +1,5 @@
 """Python's side of the compiled loops is written from the headers of C, and whatever changes there is noticed."""
 
-from __future__ import annotations
-
 import ctypes
 import re
 import runpy

@@ -1,7 +1,5 @@
 """Maps of limited views: sectors, who measures whom, and what the attack leaves, against the geometry alone."""
 
-from __future__ import annotations
-
 import math
 import re
 

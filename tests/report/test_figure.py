@@ -1,7 +1,5 @@
 """The figure shows the attack that the report states, and no text overlaps or is cut off."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from itertools import combinations
 

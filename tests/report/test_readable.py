@@ -1,7 +1,5 @@
 """Reports show what they say: words that do not overlap, phones, scale, ellipses of tracks, axes, intervals."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from itertools import combinations

@@ -1,7 +1,5 @@
 """The passes over all sets, against their definitions; parts of a pass; and what C may not read."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

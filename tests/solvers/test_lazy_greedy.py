@@ -1,7 +1,5 @@
 """Gains that C evaluates, and what bounds later ones, against the values of the objective; and what C may not read."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """RATT and the baselines against Algorithm 1 written out line by line."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import networkx as nx

@@ -1,7 +1,5 @@
 """Weak families of groups by sizes: where they start, what shares of the budget they leave."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

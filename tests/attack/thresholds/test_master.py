@@ -1,7 +1,5 @@
 """Dual prices claim what they say."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

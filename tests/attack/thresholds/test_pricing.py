@@ -1,7 +1,5 @@
 """Groups of small reduced cost, what they need, and how large sets below a threshold are, against the definitions."""
 
-from __future__ import annotations
-
 from ctypes import c_uint64
 from itertools import combinations
 

@@ -1,7 +1,5 @@
 """The attack engine on all sets: every part against its definition, the whole against the plain threshold test."""
 
-from __future__ import annotations
-
 import networkx as nx
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """``report.html`` in a real browser: it loads without a fault, its toggles work, its numbers are the report's."""
 
-from __future__ import annotations
-
 import json
 import re
 from html.parser import HTMLParser

@@ -1,7 +1,5 @@
 """Sums of one's own whose methods do not answer as asked: one line that names the method, the part and the rule."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
