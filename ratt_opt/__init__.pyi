@@ -226,7 +226,7 @@ from .curvatures.ratios import (
 # == The communication graph
 from .graph.any_networkx import communication_graph as communication_graph
 from .graph.survivor_sizes import caa as caa, CaaResult as CaaResult
-from .attack.edge_cuts.smallest import smallest_largest_group as smallest_largest_group
+from .attack.edge_cuts.smallest import SizeParams as SizeParams, smallest_largest_group as smallest_largest_group
 from .graph.largest_group.counting import LargestGroup as LargestGroup
 from .attack.edge_cuts.fewest import fewest_cuts as fewest_cuts
 from .attack.edge_cuts.fewest import FewestCuts as FewestCuts

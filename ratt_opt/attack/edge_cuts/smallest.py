@@ -9,6 +9,7 @@ Counting, and tree inequalities of a linear program, raise the lower end for as 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,8 +53,11 @@ METHODS = ("auto", "milp", "spreading", "caa", "partitions", "enumeration", "cou
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SizeParams:
-    """``first_share``, ``first_nodes`` : of a first try of the next smaller size, before tree inequalities.
+    """Parameters of the search for the smallest largest group; ``replace`` changes some.
 
+    They decide how soon its bracket closes, never whether it holds.
+
+    ``first_share``, ``first_nodes`` : of a first try of the next smaller size, before tree inequalities
     ``one_by_one`` : attacks that use the whole budgets, up to which every cut is tried: 20,000 take a second or two of
         the processor at 120 robots
     ``trees_share`` : of the time left for tree inequalities, and ``proof_share`` for a size above the lower end
@@ -71,7 +75,8 @@ class SizeParams:
     soon_subsets: int = 12
 
 
-PARAMS = SizeParams()
+DEFAULT = SizeParams()
+"""Parameters of searches that are not given any."""
 
 
 @interruptible
@@ -85,6 +90,7 @@ def smallest_largest_group(
     time_limit: float | None = None,
     max_nodes: int | None = None,
     budget: Budget | None = None,
+    params: SizeParams = DEFAULT,
 ) -> LargestGroup:
     """Return the smallest size of the largest group that ``alpha_c`` cut links can leave.
 
@@ -100,6 +106,7 @@ def smallest_largest_group(
     protected_links : links that cannot be cut
     time_limit, max_nodes : seconds, and nodes of all searches; unlimited by default
     budget : an outer search's budget: its seconds and interrupts count too
+    params : of ``"auto"``
 
     Raises
     ------
@@ -124,16 +131,16 @@ def smallest_largest_group(
     if method in {"caa", "partitions"}:
         return by_caa(threat) if method == "caa" else by_integer_partitions(threat)
     ways = {"enumeration": by_subsets, "milp": by_integer_program, "spreading": by_spreading, "counting": by_counting}
-    return ways.get(method, largest_group_of)(threat, own)
+    return ways.get(method, partial(largest_group_of, params=params))(threat, own)
 
 
-def largest_group_of(threat: Threat, budget: Budget) -> LargestGroup:
+def largest_group_of(threat: Threat, budget: Budget, params: SizeParams = DEFAULT) -> LargestGroup:
     """:func:`smallest_largest_group` of a threat, whose robots to blind do not count; nodes are those of ``budget``."""
     if threat.links_alike:
         return by_caa(threat)
-    if threat.n_attacks <= PARAMS.one_by_one:
+    if threat.n_attacks <= params.one_by_one:
         return by_few_cuts(threat, budget)
-    search = _SizeSearch(threat, by_counting(threat, budget), budget)
+    search = _SizeSearch(threat, by_counting(threat, budget), budget, params)
     search.run()
     return search.result()
 
@@ -182,27 +189,27 @@ def _none_smaller(size: int) -> str:
     return f"no partition into connected groups of at most {size - 1} robots is within the link budget"
 
 
-def bound_soon(threat: Threat, budget: Budget) -> LargestGroup:
+def bound_soon(threat: Threat, budget: Budget, params: SizeParams = DEFAULT) -> LargestGroup:
     """Bracket the smallest largest group by a fixed amount of work; mostly exact up to some 60 robots.
 
     Seconds at hundreds of robots, and without a limit of time the same on every machine: every part ends after a fixed
     amount of work.
     """
-    found = _searched_soon(threat, budget)
+    found = _searched_soon(threat, budget, params)
     lower = found.lower if found.is_exact else forced_size_soon(threat, budget)
     if found.lower >= lower:
         return found
     return replace(found, lower=lower, claimed_lower=lower, method="spreading", reason=TREES)
 
 
-def _searched_soon(threat: Threat, budget: Budget) -> LargestGroup:
+def _searched_soon(threat: Threat, budget: Budget, params: SizeParams) -> LargestGroup:
     """Search all partitions of small teams, and smaller sizes one by one of others."""
     known = by_counting(threat, budget)
-    if known.is_exact or threat.graph.n_robots > PARAMS.soon_robots:
+    if known.is_exact or threat.graph.n_robots > params.soon_robots:
         return known
-    if threat.graph.n_robots <= PARAMS.soon_subsets:
+    if threat.graph.n_robots <= params.soon_subsets:
         return by_subsets(threat, budget)
-    search = _SizeSearch(threat, known, budget.part(max_nodes=PARAMS.soon_nodes))
+    search = _SizeSearch(threat, known, budget.part(max_nodes=params.soon_nodes), params)
     search.go_down(while_decided=True)
     return search.result()
 
@@ -210,8 +217,8 @@ def _searched_soon(threat: Threat, budget: Budget) -> LargestGroup:
 class _SizeSearch:
     """The bracket of one threat, and what raises and lowers its ends."""
 
-    def __init__(self, threat: Threat, known: LargestGroup, budget: Budget) -> None:
-        self.threat, self.known, self.budget = threat, known, budget
+    def __init__(self, threat: Threat, known: LargestGroup, budget: Budget, params: SizeParams) -> None:
+        self.threat, self.known, self.budget, self.params = threat, known, budget, params
         self.lower, self.upper, self.cut, self.reason = known.lower, known.upper, known.cut, known.reason
         self._network = CutNetwork.of(threat.graph, together=threat.protected_links)
         self._limits: list[str] = []
@@ -230,10 +237,10 @@ class _SizeSearch:
             self._eliminate()
             self._anneal()
             if self.lower < self.upper:
-                with self.budget.stage(PARAMS.first_share, max_nodes=PARAMS.first_nodes) as first:
+                with self.budget.stage(self.params.first_share, max_nodes=self.params.first_nodes) as first:
                     self._decide(self.upper - 1, first)
             if self.lower < self.upper:
-                with self.budget.stage(PARAMS.trees_share) as trees:
+                with self.budget.stage(self.params.trees_share) as trees:
                     self._raise(forced_size(replace(self.threat, alpha_s=0), trees, self.upper), TREES)
         except OutOfBudget as spent:
             self._stop = spent.stop
@@ -273,7 +280,7 @@ class _SizeSearch:
         try:
             while self.lower < self.upper:
                 size = max(self.lower, self.upper - step)
-                share = PARAMS.proof_share if size > self.lower else 1.0
+                share = self.params.proof_share if size > self.lower else 1.0
                 with self.budget.stage(share) as part:
                     if self._decide(size, part):
                         step = 1

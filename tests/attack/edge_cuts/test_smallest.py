@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 
 import ratt_opt as ro
 from ratt_opt.attack.edge_cuts import cut_search
-from ratt_opt.attack.edge_cuts.smallest import PARAMS, bound_soon
+from ratt_opt.attack.edge_cuts.smallest import bound_soon
 from ratt_opt.budget import Budget
 from ratt_opt.graph.communication import CommunicationGraph
 from ratt_opt.graph.threat import Threat
 from tests.attack.stages.test_few_attacks import sparse_network
+from tests.extremes import at_extremes, places, undocumented
 from tests.strategies import SEEDED, random_graph, random_problem
 
 
@@ -173,6 +174,22 @@ def test_time_may_end_at_any_look_at_the_clock(method, monkeypatch):
         assert found.lower <= exact <= found.upper
 
 
+@pytest.mark.parametrize("place", places(ro.SizeParams()))
+def test_brackets_hold_whatever_one_parameter_is(place):
+    assert not undocumented(ro.SizeParams())
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        graph = random_graph(rng, int(rng.integers(5, 8)))
+        alpha_c = int(rng.integers(0, graph.number_of_edges() + 1))
+        exact = ro.smallest_largest_group(graph, alpha_c, method="enumeration").n_max
+        threat = Threat(CommunicationGraph.from_networkx(graph, len(graph)), 0, alpha_c)
+        for _, params in at_extremes(ro.SizeParams(one_by_one=0, soon_subsets=0), place):
+            found = ro.smallest_largest_group(graph, alpha_c, params=params)
+            check(found, graph, alpha_c)
+            assert found.lower <= exact <= found.upper
+            assert bound_soon(threat, Budget(), params).lower <= exact
+
+
 @SEEDED
 @given(st.integers(15, 18), st.integers(0, 10**6), st.sampled_from([0.15, 0.3, 0.6]))
 def test_what_ratt_takes_is_a_bound_at_any_moment(n_robots, seed, density):
@@ -212,12 +229,11 @@ def test_few_cuts_of_large_sparse_networks_are_tried_one_by_one():
     rng = np.random.default_rng(371)
     graph = sparse_network(rng, 60, 3)
     threat = Threat(ro.Problem(ro.Modular(np.ones(60)), np.arange(60), graph, 0, 2).communication, 0, 2)
-    assert threat.n_attacks <= PARAMS.one_by_one
     truth = min(
         max(len(group) for group in threat.graph.groups(cut)) for cut in combinations(sorted(threat.graph.links), 2)
     )
     found = ro.smallest_largest_group(graph, 2)
-    assert (found.lower, found.upper) == (truth, truth)
+    assert (found.lower, found.upper, found.method) == (truth, truth, "enumeration")
     soon = ro.smallest_largest_group(graph, 2, max_nodes=5)
     assert soon.lower <= truth <= soon.upper
     assert ro.smallest_largest_group(graph, 2, time_limit=0).upper >= truth
