@@ -31,6 +31,7 @@ from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
 from ratt_opt.solvers.maxmin.params import MaxMinParams
 from ratt_opt.solvers.maxmin.stages.ties import break_ties
 from ratt_opt.solvers.maxmin.walk import Walk
+from ratt_opt.solvers.maxmin.watchers import watched_plan
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.undominated import UndominatedProblem, dominators, undominated
 
@@ -157,7 +158,9 @@ def refined(
             incumbent.on_improvement = lambda plan: on_improvement(few.kept[plan])
         incumbent.pool.list_all(incumbent.params.outcomes)
         others = [planner(problem, budget=own).elements for planner in (greedy, myopic)]
-        incumbent.meet([among[plan] for plan in (first.elements, *given, *others)])
+        watched = watched_plan(few, own, incumbent.params.watchers)
+        plans = [among[plan] for plan in (first.elements, *given, *others)]
+        incumbent.meet(plans if watched is None else [*plans, watched])
         kicks = _walked(incumbent, rng, own, kicks_left, params)
         _prove(incumbent, own, params)
         break_ties(incumbent, own.part(incumbent.params.ties.share))

@@ -49,6 +49,7 @@ class ConcaveTree:
         self.small = SmallGroups(known.tables, self.by_winner, self.incumbent.budget)
         self.division = Division(self.cuts, self.by_winner)
         self.backjumps = Backjumps(self.frontier, self.cuts)
+        self._at_first_root = self.incumbent.budget.nodes == 0
 
     @property
     def upper(self) -> float:
@@ -97,9 +98,9 @@ class ConcaveTree:
         if (node := self._narrowed(queued.node)) is None:
             return None
         nodes, stalls = slices.budget.nodes, 0
-        params = self.task.params.rounds
-        allowed_stalls = params.stalls_at_root if nodes == 1 else params.stalls
-        hulls = self.rounds.hulls_at(nodes)
+        params, rows = self.task.params.rounds, self.task.params.rows
+        allowed_stalls = params.stalls_at_root if self._at_first_root else params.stalls
+        hulls, before_hulls = rows.hulls_at_root if self._at_first_root else 0, np.inf
         why_stop = slices.stop_within_node if self.rounds.begins_with_rows else slices.stop
         self.rounds.begin(node)
         while True:
@@ -119,8 +120,11 @@ class ConcaveTree:
             node = self._in_hand(self._eliminate(node, *found))
             stalls = stalls + 1 if before - node.bound < params.stall * (node.bound - self.rule.level) else 0
             stalled = not self.rounds.separate(node, relaxed) or stalls >= allowed_stalls
-            if stalled and hulls > 0 and self.rounds.sharpen(node, relaxed):
-                hulls, stalls, stalled = hulls - 1, 0, False
+            least = rows.hull_least * (node.bound - self.rule.level)
+            if stalled and hulls > 0 and before_hulls - node.bound >= least:
+                hulls, before_hulls = hulls - 1, node.bound
+                if self.rounds.sharpen(node, relaxed):
+                    stalls, stalled = 0, False
             if stalled:
                 if nodes & (nodes - 1) == 0:  # the first nodes, and ever fewer
                     self.incumbent.improve(plan)
@@ -143,6 +147,7 @@ class ConcaveTree:
 
     def branch(self, bounded: tuple[TreeNode, RelaxedPlan | None]) -> list[OpenTreeNode]:
         """Return the children of a node."""
+        self._at_first_root = False
         return [self.frontier.queued(child) for child in self.division.children(*bounded)]
 
     def _in_hand(self, node: TreeNode) -> TreeNode:

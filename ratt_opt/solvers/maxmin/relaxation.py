@@ -174,10 +174,6 @@ class CutRounds:
         """True if rows are used from the first nodes on."""
         return self._rows_from == 0
 
-    def hulls_at(self, nodes: int) -> int:
-        """Number of rounds with hulls at the node of this number: none below the root."""
-        return self._params.hulls_at_root if nodes == 1 else 0
-
     def use(self, k: int) -> None:
         """Bring cut ``k`` into the program."""
         self._program.use(k, float(self.cuts.constants[k]), self.cuts.scores(k))

@@ -29,6 +29,7 @@ from ratt_opt.solvers.maxmin.stages import schedule
 from ratt_opt.solvers.maxmin.stages.first_plans import outlast_first_plans
 from ratt_opt.solvers.maxmin.time_slices import TimeSlices
 from ratt_opt.solvers.maxmin.upper_bound_portfolio import UpperBoundPortfolio
+from ratt_opt.solvers.maxmin.watchers import watched_plan
 from ratt_opt.solvers.ratt import alpha_cs_in_share, greedy, myopic, ratt
 from ratt_opt.solvers.result import MaxMinResult, NonrobustPlan, posterior_gap
 
@@ -156,6 +157,8 @@ def solve_in_coordinates(  # noqa: PLR0917  (as solve_maxmin has them)
     try:
         pool.list_all(params.outcomes)
         plans = _first_plans(problem, first, earlier, longer)
+        watched = watched_plan(problem, budget, params.watchers)
+        plans += [] if watched is None else [watched]
         state = LowerEnd(incumbent=incumbent, plans=plans, gap=gap, by_rows=by_rows)
         run_plan_stages(schedule.PLAN_STAGES, state, PlanPhase.BEFORE)
         search = UpperBoundPortfolio(state.known, stages)

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 
 from ratt_opt import exhaustive_optimum, solve_maxmin
 from ratt_opt.attack.staging import without_stages
-from ratt_opt.solvers.maxmin.plan_stage import PlanPhase, PlanStage
+from ratt_opt.budget import Budget
+from ratt_opt.solvers.maxmin.incumbent import Incumbent
+from ratt_opt.solvers.maxmin.outcome_pool import OutcomePool
+from ratt_opt.solvers.maxmin.plan_stage import LowerEnd, PlanPhase, PlanStage
 from ratt_opt.solvers.maxmin.stages import schedule
 from tests.solvers.maxmin.engine import UNLISTED
 from tests.strategies import small_team
@@ -60,3 +65,17 @@ def test_a_new_stage_is_a_class_and_a_line(monkeypatch):
     with without_stages("drawn"):
         solve_maxmin(problem)
     assert drawn.offered == 10
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_plans_are_attacked_until_one_does_not_fall(seed):
+    problem, budget = small_team(seed), Budget()
+    plans = list(product(*(choice.tolist() for choice in problem.choices)))
+    incumbent = Incumbent(problem, OutcomePool(problem), np.array(plans[0]), budget)
+    for plan in map(np.array, plans[1:]):  # of which no attack is known yet
+        incumbent.candidates.meet(plan)
+        incumbent.candidates.add(plan)
+    stage = next(stage for stage in schedule.PLAN_STAGES if stage.name == "best plan so far")
+    stage.run(LowerEnd(incumbent=incumbent, plans=[np.array(plans[0])], gap=1e-9, by_rows=True), budget)
+    assert incumbent.is_proved
+    assert incumbent.proved.lower == pytest.approx(exhaustive_optimum(problem).lower, rel=1e-9)

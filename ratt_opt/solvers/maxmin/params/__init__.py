@@ -25,6 +25,7 @@ from ratt_opt.solvers.maxmin.params.plans import (
     KickParams,
     OutcomeListParams,
     TieParams,
+    WatcherParams,
 )
 from ratt_opt.solvers.maxmin.params.rows import RowParams
 from ratt_opt.solvers.maxmin.params.trees import (
@@ -72,6 +73,7 @@ __all__ = [
     "ValueCheckParams",
     "ValueTurnParams",
     "ValueWalkParams",
+    "WatcherParams",
     "or_default",
 ]
 
@@ -97,6 +99,7 @@ class MaxMinParams:
     incumbent: IncumbentParams = field(default_factory=IncumbentParams)
     walk: KickParams = field(default_factory=KickParams)
     ties: TieParams = field(default_factory=TieParams)
+    watchers: WatcherParams = field(default_factory=WatcherParams)
     few_plans: FewPlansParams = field(default_factory=FewPlansParams)
     rounds: CutRoundParams = field(default_factory=CutRoundParams)
     division: DivisionParams = field(default_factory=DivisionParams)

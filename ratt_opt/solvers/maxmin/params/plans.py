@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["AdversaryParams", "FewPlansParams", "IncumbentParams", "KickParams", "OutcomeListParams", "TieParams"]
+__all__ = [
+    "AdversaryParams",
+    "FewPlansParams",
+    "IncumbentParams",
+    "KickParams",
+    "OutcomeListParams",
+    "TieParams",
+    "WatcherParams",
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,6 +105,21 @@ class KickParams:
     softness: float = 0.01
     worse: float = 0.01
     back: int = 50
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WatcherParams:
+    """First plan by the numbers of watchers that targets have.
+
+    ``unseen`` : least share of pairs of an element and a target without information
+    ``watching`` : share of what all elements tell about a target that an element alone has to tell, to watch it
+    ``kicks``, ``share`` : of the walk, and share of the time left: better plans against time for attacks
+    """
+
+    unseen: float = 0.25
+    watching: float = 0.5
+    kicks: int = 300
+    share: float = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

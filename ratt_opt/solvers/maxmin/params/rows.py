@@ -32,6 +32,8 @@ class RowParams:
     ``steps`` : exchanges of one descent at most
     ``hulls_at_root`` : rounds with hulls, once rows stall at the root. With one more at each node, 20 cameras
         had a tenth of the nodes, and as much open after a minute
+    ``hull_least`` : share of what is open that a round with hulls has to take off for another one: on networks of fifty
+        a round takes seconds and takes off a thousandth of it, with the time that attacks need
     ``hull_groups`` : groups with the lowest rows that get hulls in one round
     ``hull_gain`` : of what is open at a node, for all targets together: what a hull has to lower its target's bound by
     ``least_share`` : weights of elements up to this are none for a hull
@@ -58,6 +60,7 @@ class RowParams:
     starts: int = 3
     steps: int = 30
     hulls_at_root: int = 20
+    hull_least: float = 0.005
     hull_groups: int = 8
     hull_gain: float = 0.03
     least_share: float = 1e-3

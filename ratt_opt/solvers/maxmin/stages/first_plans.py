@@ -75,8 +75,13 @@ class BestAttackedStage(AttackedStage):
         return is_new and not incumbent.is_proved and not incumbent.budget.is_over
 
     def run(self, state: LowerEnd, budget: Budget) -> None:
-        """Attack the best plan so far exactly."""
-        state.incumbent.proved.attack(state.incumbent.candidates.best, budget)
+        """Attack the best plan so far exactly, and the next best if that one falls."""
+        incumbent = state.incumbent
+        while not incumbent.is_proved and not budget.is_over:
+            known = len(incumbent.pool)
+            incumbent.proved.attack(incumbent.candidates.best, budget)
+            if len(incumbent.pool) == known:
+                break
 
 
 def outlast_first_plans(state: LowerEnd, longer: Budget) -> None:

@@ -30,8 +30,8 @@ PLAN_STAGES: tuple[PlanStage, ...] = (
     AttackedStage(),
     QuickValuesStage(),
     ClimbStage(),
-    BestAttackedStage(),
     WalkStage(),
+    BestAttackedStage(),
     ProofStage(),
     TiesStage(),
 )

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from ratt_opt import LogDetObjective, Problem, TraceObjective
+from ratt_opt import LogDetObjective, MaxMinParams, Problem, TraceObjective, limited_view_scenario, solve_maxmin
 from ratt_opt.solvers.maxmin.elements import Task
 from ratt_opt.solvers.maxmin.params import RowParams
 from ratt_opt.solvers.maxmin.rows.base_sets import first_of_each_class, semidefinite
 from ratt_opt.solvers.maxmin.rows.hulls import TargetHull, hulls_of
+from ratt_opt.solvers.maxmin.rows.separation import RowSeparation
 
 ROBOTS, CONTROLS, TARGETS = 4, 3, 2
 
@@ -120,3 +121,25 @@ def test_a_trace_of_outputs_has_none() -> None:
     f = task.objective
     part = TraceObjective(f.prior, f.information, output=np.ones((1, 2)))
     assert drawn_hulls(Task.of(replace(task.problem, objective=part))) == [None] * TARGETS
+
+
+@pytest.mark.parametrize(("least", "rounds"), [(0.0, 2), (1e9, 1)])
+def test_rounds_end_at_the_root_that_take_off_too_little(least, rounds, monkeypatch):
+    problem = limited_view_scenario(6, 6, alpha_s=2, alpha_c=0, seed=0, view=57).problem("logdet")
+    params = replace(MaxMinParams(), rows=RowParams(seen=0.0, hull_least=least, hulls_at_root=2))
+    asked = []
+    monkeypatch.setattr(RowSeparation, "sharpen", sharpen_and_note(asked))
+    found = solve_maxmin(problem, params=params, max_nodes=1)
+    assert len(asked) == rounds
+    assert found.lower <= found.upper
+
+
+def sharpen_and_note(asked: list[int]):
+    """Build the rounds as they are, which are noted."""
+    plain = RowSeparation.sharpen
+
+    def sharpen(self, relaxed, groups, open_value):
+        asked.append(len(groups))
+        return plain(self, relaxed, groups, open_value)
+
+    return sharpen
