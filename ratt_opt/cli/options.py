@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ratt_opt.errors import InputError
+from ratt_opt.missions.players import names
 from ratt_opt.setfunctions.criteria.names import CLASSES
 
 __all__ = [
     "GAP",
     "TIME_LIMIT",
+    "Attacker",
     "CertificateFlag",
     "InputFile",
     "JsonFlag",
@@ -23,27 +25,9 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    Objective = str
-else:
-    Objective = Literal[tuple(CLASSES)]  # the choices that help and refusals list
-
-Planner = Literal[
-    "ratt",
-    "decentralised",
-    "decentralised_refined",
-    "refined",
-    "maxmin",
-    "greedy",
-    "myopic",
-    "nonrobust_optimum",
-    "random",
-    "resilient_selection",
-    "sensing_only",
-    "uniform_buckets",
-    "partitioned_robust",
-    "sequential_greedy",
-    "resource_aware_greedy",
-]
+    Objective = Planner = Attacker = str
+else:  # the choices that help and refusals list
+    Objective, Planner, Attacker = Literal[tuple(CLASSES)], Literal[names.PLANNERS], Literal[names.ATTACKERS]
 
 TIME_LIMIT = 60.0
 """Seconds for all searches of a command, unless the user says otherwise: as in ``ratt_opt.bound``."""

@@ -38,7 +38,7 @@ EARLIER = "certificate.earlier.json"
 """The certificate of an earlier report in the folder when a later one has none."""
 CUTS_SHARE = 0.2
 """Share of a certificate's seconds for that of the smallest largest group."""
-NOT_DRAWN = "without plan.png and plan.svg, which the same command draws once it ends; report.html has the map"
+NOT_DRAWN = "without plan.png, plan.svg and maps, which the same command draws once it ends"
 """Message after an interrupt: drawing takes a second or two, mostly to load the drawing library."""
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ratt_opt.cli.options import JsonFlag, OutFolder, Planner
+from ratt_opt.cli.options import Attacker, JsonFlag, Objective, OutFolder, Planner
 from ratt_opt.cli.terminal import WorkInterrupted, print_json, print_lines, written
 from ratt_opt.errors import InputError, printable
 from ratt_opt.running.progress import Step
@@ -21,8 +21,6 @@ __all__ = ["track"]
 
 JOURNAL = "journal.jsonl"
 """Every step's decisions, in the folder of the results: run the same command again after a kill, and it goes on."""
-
-Attacker = Literal["none", "worst", "bounded_rational", "greedy", "random"]
 
 
 def track(
@@ -46,7 +44,7 @@ def track(
         int | None, typer.Option("--beam", min=1, help="Control sequences of a robot to plan with; all if absent.")
     ] = None,
     objective: Annotated[
-        Literal["trace", "logdet", "maxeig"],
+        Objective,
         typer.Option("--objective", help="Criterion of plans; no logdet several steps ahead."),
     ] = "trace",
     motion: Annotated[

@@ -10,7 +10,8 @@ from ratt_opt.attack.heuristics import bounded_rational_attack, greedy_attack, r
 from ratt_opt.attack.params import DEFAULT
 from ratt_opt.budget import uninterrupted
 from ratt_opt.errors import InputError
-from ratt_opt.missions.players.named import get_player
+from ratt_opt.missions.players import names
+from ratt_opt.missions.players.named import get_player, table_of
 from ratt_opt.problem import Attack
 
 if TYPE_CHECKING:
@@ -42,13 +43,14 @@ class WorstAttacker:
         return worst_case_attack(problem, elements, max_nodes=None if at_once else self.nodes, brief=not at_once)
 
 
-ATTACKERS: dict[str, Attacker] = {
+_BY_NAME: dict[str, Attacker] = {
     "none": lambda _problem, _plan, _seed: Attack(),
     "worst": lambda problem, plan, _seed: WorstAttacker()(problem, plan),
     "bounded_rational": lambda problem, plan, _seed: bounded_rational_attack(problem, plan),
     "greedy": lambda problem, plan, _seed: greedy_attack(problem, plan),
     "random": lambda problem, plan, seed: random_attack(problem, plan, seed=seed),
 }
+ATTACKERS = table_of(names.ATTACKERS, _BY_NAME)
 """Attackers by name; each is called with the problem, the plan and a seed of the step."""
 
 

@@ -9,12 +9,18 @@ from ratt_opt.errors import InputError
 from ratt_opt.vocabulary import current_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
-__all__ = ["get_player", "name_of"]
+__all__ = ["get_player", "name_of", "table_of"]
 
 Player = TypeVar("Player")
 Own = TypeVar("Own", bound="Callable[..., object]")
+
+
+def table_of(names: Sequence[str], players: Mapping[str, Player]) -> dict[str, Player]:
+    """Return the players in the order of the names, of which each must have one."""
+    assert set(names) == set(players), set(names) ^ set(players)
+    return {name: players[name] for name in names}
 
 
 def get_player(role: str, given: str | Own, known: Mapping[str, Player]) -> Player | Own:

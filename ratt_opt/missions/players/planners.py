@@ -13,7 +13,8 @@ from ratt_opt.budget import uninterrupted
 from ratt_opt.decentralised.knowledge import ExchangeParams
 from ratt_opt.decentralised.plan import decentralised_ratt, decentralised_refined
 from ratt_opt.errors import InputError
-from ratt_opt.missions.players.named import get_player
+from ratt_opt.missions.players import names
+from ratt_opt.missions.players.named import get_player, table_of
 from ratt_opt.planners.registry import PUBLISHED
 from ratt_opt.solvers.maxmin.solve import nonrobust_optimum, solve_maxmin
 from ratt_opt.solvers.ratt import greedy, myopic, random_plan, ratt
@@ -127,7 +128,7 @@ class RandomPlanner:
         return random_plan(problem, seed=int(mixed.generate_state(1)[0]))
 
 
-PLANNERS: dict[str, Planner] = {
+_BY_NAME: dict[str, Planner] = {
     "ratt": ratt,
     "decentralised": DecentralisedPlanner(),
     "decentralised_refined": DecentralisedPlanner(exchanges=ExchangeParams()),
@@ -139,6 +140,7 @@ PLANNERS: dict[str, Planner] = {
     "random": RandomPlanner(),
     **{name: published.plan for name, published in PUBLISHED.items() if published.takes_any},
 }
+PLANNERS = table_of(names.PLANNERS, _BY_NAME)
 """The planners of missions by name: the library's, and published ones."""
 
 
