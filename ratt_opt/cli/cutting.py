@@ -18,9 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["cuts"]
 
-MOST_LISTED = 30
-"""More cut links than this are counted, not listed, in the text; the JSON lists all."""
-
 
 def cuts(
     file: Annotated[Path, typer.Argument(help="GraphML, GML, GEXF, node-link JSON, or edges.", show_default=False)],
@@ -130,19 +127,20 @@ def _notes(graph: "nx.Graph") -> list[str]:
     return [] if pieces == 1 else [f"the network falls into {pieces} groups before any cut"]
 
 
-def _lines(document: dict[str, Any], quantity: str) -> list[str]:
+def _lines(document: dict[str, Any], quantity: str, most: int = 30) -> list[str]:
+    """Say what was found; more than ``most`` links and groups are counted, not listed: the JSON lists all."""
     lower, upper, cut = document["lower"], document["upper"], document["cut"]
     is_exact = document["is_exact"]
-    listed = ", ".join("-".join(link) for link in cut[:MOST_LISTED])
-    more = f" and {len(cut) - MOST_LISTED} more" if len(cut) > MOST_LISTED else ""
+    listed = ", ".join("-".join(link) for link in cut[:most])
+    more = f" and {len(cut) - most} more" if len(cut) > most else ""
     sizes = [str(len(group)) for group in document["groups"]]
-    rest = " ..." if len(sizes) > MOST_LISTED else ""
+    rest = " ..." if len(sizes) > most else ""
     return [
         f"{document['robots']} robots, {document['links']} links",
         f"{quantity}: {upper}, exact" if is_exact else f"{quantity}: from {lower} to {upper} ({document['stop']})",
         f"why not less: {document['reason']}",
         f"cut links ({len(cut)}): {listed}{more}" if cut else "no link needs to be cut",
-        f"groups left ({len(sizes)}), robots in each: {' '.join(sizes[:MOST_LISTED])}{rest}",
+        f"groups left ({len(sizes)}), robots in each: {' '.join(sizes[:most])}{rest}",
         *document["notes"],
         *_proof_lines(document.get("certificate")),
     ]

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["decentralise"]
 
-MOST_TOLD = 3
-"""Links that are printed; all are in the file."""
-
 
 def decentralise(
     file: InputFile,
@@ -174,8 +171,8 @@ def _lines(plan: "DecentralisedPlan") -> list[str]:
     ]
 
 
-def _link_lines(problem: "Problem", links: "LinkLosses | None") -> list[str]:
-    """Say which links' losses cost most, as far as they were seen."""
+def _link_lines(problem: "Problem", links: "LinkLosses | None", most: int = 3) -> list[str]:
+    """Say which ``most`` links' losses cost most, as far as they were seen; all are in the file."""
     if links is None or not links.losses:
         return []
     worst = links.worst_case
@@ -183,7 +180,7 @@ def _link_lines(problem: "Problem", links: "LinkLosses | None") -> list[str]:
     seen = "" if len(links.losses) == all_seen else f" (of {len(links.losses)} of {all_seen} links, until time was up)"
     told = "; ".join(
         f"{i}-{j}: {loss.cost:+.4g}, {loss.delay:+.2f} s{f', {loss.parts} parts' if loss.parts > 1 else ''}"
-        for loss in links.losses[:MOST_TOLD]
+        for loss in links.losses[:most]
         for i, j in [loss.link]
     )
     return [

@@ -8,16 +8,12 @@ import threading
 from time import sleep
 from typing import TYPE_CHECKING, Any, Self
 
-from ratt_opt.running.interrupts import interrupt_main_thread
+from ratt_opt.running.interrupts import AGAIN_AFTER, interrupt_main_thread
 
 if TYPE_CHECKING:
     from types import FrameType
 
 __all__ = ["Interrupts", "ignore_interrupts"]
-
-AGAIN_AFTER = 0.01
-"""Seconds until a dropped interrupt comes again, the destructor or callback that dropped it having ended by then; and
-again, until it is met: one that comes just before the program waits for something does not end the waiting."""
 
 
 class Interrupts:
@@ -72,7 +68,11 @@ class Interrupts:
             self._hook(what)
 
     def _again(self) -> None:
-        """Interrupt the main thread until it has met that, unless the process would end by it."""
+        """Interrupt the main thread until it has met that, unless the process would end by it.
+
+        The destructor or callback that dropped it has ended by then. It comes again until it is met: one that comes
+        just before the program waits for something does not end the waiting.
+        """
         sleep(AGAIN_AFTER)
         while not self._met and signal.getsignal(signal.SIGINT) == self._interrupt:
             interrupt_main_thread()

@@ -25,7 +25,9 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    Objective = Planner = Attacker = str
+    Objective = str
+    Planner = str
+    Attacker = str
 else:  # the choices that help and refusals list
     Objective, Planner, Attacker = Literal[tuple(CLASSES)], Literal[names.PLANNERS], Literal[names.ATTACKERS]
 

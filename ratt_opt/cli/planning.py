@@ -32,12 +32,8 @@ if TYPE_CHECKING:
 
 __all__ = ["bound", "demo"]
 
-PAPER_SEED = 14
-"""A scenario of the paper's kind on which the planners differ; on many others RATT and greedy find the same plan."""
 EARLIER = "certificate.earlier.json"
 """The certificate of an earlier report in the folder when a later one has none."""
-CUTS_SHARE = 0.2
-"""Share of a certificate's seconds for that of the smallest largest group."""
 NOT_DRAWN = "without plan.png, plan.svg and maps, which the same command draws once it ends"
 """Message after an interrupt: drawing takes a second or two, mostly to load the drawing library."""
 
@@ -61,7 +57,8 @@ def demo(
     from ratt_opt.scenario.generator import random_scenario
     from ratt_opt.scenario.limited_view import demo_scenario
 
-    scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=PAPER_SEED) if paper else demo_scenario()
+    # With this seed the planners differ; with many others RATT and greedy find the same plan.
+    scenario = random_scenario(4, 4, alpha_s=1, alpha_c=3, seed=14) if paper else demo_scenario()
     save_scenario(scenario, output_directory(out, CERTIFICATE, EARLIER, CUTS, *FILES) / "scenario.json")
     _bound(scenario, out, certificate=certificate, as_json=as_json, as_latex=as_latex)
 
@@ -193,6 +190,7 @@ def _certified(
     from ratt_opt.budget import Budget
     from ratt_opt.certificates.edge_cuts import certify_size_if_possible
     from ratt_opt.certificates.write import certify_if_possible
+    from ratt_opt.main_job.params import SHARES
     from ratt_opt.report.write import write_verdict
 
     began = monotonic()
@@ -202,7 +200,11 @@ def _certified(
     (folder / CUTS).unlink(missing_ok=True)  # of an earlier report
     try:
         cuts = certify_size_if_possible(
-            report.problem.threat, report.largest_group, folder / CUTS, budget.part(CUTS_SHARE), params
+            report.problem.threat,
+            report.largest_group,
+            folder / CUTS,
+            budget.part(SHARES.cuts_certificate),
+            params,
         )
         asked: dict[str, Any] = {"source": report.source, "params": params}
         proof = certify_if_possible(report.problem, report.optimum, folder / CERTIFICATE, budget, **asked)

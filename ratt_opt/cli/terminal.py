@@ -29,10 +29,6 @@ __all__ = [
 ]
 
 
-NARROWEST = 80
-"""Columns of tables on terminals that have fewer: those break lines themselves; a table would cut numbers short."""
-
-
 class WorkInterrupted(Exception):  # noqa: N818  (not an error: what is finished is kept)
     """The user ended a command that kept what was finished; the text says what."""
 
@@ -90,7 +86,8 @@ def print_tables(tables: Iterable[Table], lines: Iterable[str] = (), *, latex: b
     with _delivered():
         width, no_color = (None, None) if sys.stdout.isatty() else (160, True)
         console = Console(width=width, no_color=no_color, markup=False, emoji=False)
-        console.width = max(console.width, NARROWEST)
+        # Terminals of fewer columns break lines themselves; a table would cut numbers short.
+        console.width = max(console.width, 80)
         for table in tables:
             console.print(table)
         for line in lines:

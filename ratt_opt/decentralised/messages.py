@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from enum import IntFlag, auto
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
     from ratt_opt._validation import FloatArray
 
 __all__ = [
+    "MOST_ROBOTS",
     "VERSION",
     "Award",
     "BaitChoice",
@@ -55,9 +57,16 @@ ABOUT_BAIT = struct.Struct("<BI8sH")
 PRICED = struct.Struct("<dH")
 OFFER = struct.Struct("<BI8sHdHI")
 CHOICE = struct.Struct("<HI")
-PROTECTED = 1 << 15
-"""The highest bit of a neighbour's number: robots are fewer."""
-BLINDED, CANNOT_BE_BLINDED, AS_MASKS = 1, 2, 4
+MOST_ROBOTS = 1 << 15
+"""Robots that numbers of 16 bits tell apart; the highest bit of a neighbour's says that the link is protected."""
+
+
+class RecordFlag(IntFlag):
+    """Flags of a record of links: of its robot, and of how its neighbours are written."""
+
+    BLINDED = auto()
+    CANNOT_BE_BLINDED = auto()
+    AS_MASKS = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,11 +231,12 @@ def _encoded_choice(choice: Choice) -> bytes:
 
 def _encoded_record(record: LinkRecord) -> bytes:
     n, size = len(record.neighbours), record.mask_bytes
-    flags = BLINDED * record.blinded | CANNOT_BE_BLINDED * record.is_protected | AS_MASKS * (size < n)
+    flags = RecordFlag.BLINDED * record.blinded | RecordFlag.CANNOT_BE_BLINDED * record.is_protected
+    flags |= RecordFlag.AS_MASKS * (size < n)
     head = RECORD.pack(1, record.robot, record.number, flags, min(size, n))
     if size < n:
         return head + b"".join(mask_of(ends).to_bytes(size, "little") for ends in (record.neighbours, record.protected))
-    return head + struct.pack(f"<{n}H", *(i | PROTECTED * (i in record.protected) for i in record.neighbours))
+    return head + struct.pack(f"<{n}H", *(i | MOST_ROBOTS * (i in record.protected) for i in record.neighbours))
 
 
 def decode(data: bytes, version: int = VERSION) -> Packet:
@@ -288,14 +298,14 @@ def _decoded_choice(data: bytes, place: int, floats: int) -> Choice:
 def _decoded_record(data: bytes, place: int) -> LinkRecord:
     _, robot, number, flags, n = RECORD.unpack_from(data, place)
     place += RECORD.size
-    if flags & AS_MASKS:
+    if flags & RecordFlag.AS_MASKS:
         if len(data) < place + 2 * n:
             raise IndexError
         masks = (int.from_bytes(data[place + k * n : place + (k + 1) * n], "little") for k in range(2))
         neighbours, protected = (tuple(robots_of(mask)) for mask in masks)
     else:
         ends = struct.unpack_from(f"<{n}H", data, place)
-        neighbours = tuple(end & ~PROTECTED for end in ends)
-        protected = tuple(end & ~PROTECTED for end in ends if end & PROTECTED)
-    seen = (bool(flags & BLINDED), bool(flags & CANNOT_BE_BLINDED))
+        neighbours = tuple(end & ~MOST_ROBOTS for end in ends)
+        protected = tuple(end & ~MOST_ROBOTS for end in ends if end & MOST_ROBOTS)
+    seen = (bool(flags & RecordFlag.BLINDED), bool(flags & RecordFlag.CANNOT_BE_BLINDED))
     return LinkRecord(robot, number, neighbours, frozenset(protected), *seen)

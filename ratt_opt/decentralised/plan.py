@@ -16,6 +16,7 @@ from ratt_opt.budget import Budget, Stop, interruptible
 from ratt_opt.decentralised.agent import Agent
 from ratt_opt.decentralised.faults import Faults
 from ratt_opt.decentralised.knowledge import Disagreement, ExchangeParams, Knowledge
+from ratt_opt.decentralised.messages import MOST_ROBOTS
 from ratt_opt.decentralised.simulator import Simulation
 from ratt_opt.errors import InputError
 from ratt_opt.problem import Plan, Problem, check_problem
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["DecentralisedPlan", "decentralised_ratt", "decentralised_refined", "knowledge_of", "make_agents"]
 
-MOST_ROBOTS = 2**15
-"""Robots that the messages' numbers tell apart."""
 NOTHING = Guarantee(0.0, ("no exchange in a component that planned alone",), "none", "none")
 
 

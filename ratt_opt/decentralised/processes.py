@@ -33,8 +33,6 @@ if TYPE_CHECKING:
 __all__ = ["ProcessParams", "ProcessPlan", "plan_in_processes"]
 
 HERE, LENGTH, NUMBER = "127.0.0.1", struct.Struct("<I"), struct.Struct("<H")
-LONGEST = 2**26
-"""Bytes of a packet that is read: more is no packet."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -210,14 +208,14 @@ class _Robot:
         (other,) = NUMBER.unpack(await reader.readexactly(NUMBER.size))
         self.streams[other] = reader, writer
 
-    async def _listen(self, agent: Agent, other: int) -> None:
-        """Take the packets of one neighbour until its stream ends or it speaks otherwise."""
+    async def _listen(self, agent: Agent, other: int, longest: int = 2**26) -> None:
+        """Take packets of at most that many bytes of one neighbour until its stream ends or it speaks otherwise."""
         reader, writer = self.streams[other]
         try:
             while True:
                 (size,) = LENGTH.unpack(await reader.readexactly(LENGTH.size))
-                if size > LONGEST:
-                    raise InputError("packet", f"must have at most {LONGEST} bytes", size)
+                if size > longest:
+                    raise InputError("packet", f"must have at most {longest} bytes", size)
                 agent.receive(decode(await reader.readexactly(size), agent.version))
                 self._flush(agent)
         except (asyncio.IncompleteReadError, ConnectionError):

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Costs", "Simulation"]
 
-LOOK = 256
-"""Events between two looks at the budget: some milliseconds."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Costs:
@@ -70,8 +67,11 @@ class Simulation:
     _awake: set[int] = field(default_factory=set)
     _random: Random = field(default_factory=Random)
 
-    def run(self, budget: Budget | None = None) -> Stop:
-        """Run until nothing is left to do: ``EXHAUSTED``; or until the budget is over."""
+    def run(self, budget: Budget | None = None, look: int = 256) -> Stop:
+        """Run until nothing is left to do: ``EXHAUSTED``; or until the budget is over.
+
+        ``look`` : events between two looks at the budget, some milliseconds.
+        """
         budget = budget or Budget()
         self._random = Random(self.seed)
         due = deque(self.faults.by_round())
@@ -84,7 +84,7 @@ class Simulation:
         steps = 0
         while self._events:
             steps += 1
-            if steps % LOOK == 0 and (stop := budget.stop()) is not None:
+            if steps % look == 0 and (stop := budget.stop()) is not None:
                 self._settle()
                 return stop
             self._now, _, event = heappop(self._events)

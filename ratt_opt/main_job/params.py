@@ -19,6 +19,7 @@ class ReportParams:
     ``attack`` : for each attack. ``nonrobust`` : for the best plan without attacks, a baseline if it is proved
     ``optimum`` : for the best plan. ``curvature`` : for curvatures, and then for the guarantees from them
     ``certificate`` : of the whole time, kept for writing and verifying a certificate; time that is left comes on top
+    ``cuts_certificate`` : of a certificate's time, for that of the smallest largest group
     ``curvature_gap`` : a curvature is bracketed until ``(1 - lower) / (1 - upper)`` is at most one plus this: every
         guarantee is a power or a ratio of ``1 - curvature``, so that is what an open bracket costs it per factor
     ``spared`` : robots or links of the worst attack that are spared in turn to find the next worst one, which a map
@@ -33,6 +34,7 @@ class ReportParams:
     optimum: float = 0.75
     curvature: float = 0.5
     certificate: float = 0.25
+    cuts_certificate: float = 0.2
     curvature_gap: float = 0.1
     spared: int = 12
     saved: float = 60.0

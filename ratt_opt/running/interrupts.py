@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from types import CodeType, FrameType
 
 __all__ = [
+    "AGAIN_AFTER",
     "imported_whole",
     "interrupt_main_thread",
     "interrupts_afterwards",

@@ -32,9 +32,6 @@ __all__ = ["DEFAULT_CONTROLS", "STATE_UNITS", "Robot", "Scenario", "Target"]
 DEFAULT_CONTROLS = tuple((speed, turn) for speed in (1.0, -1.0, 3.0, -3.0) for turn in (0.0, 1.0, 3.0))
 """{1, -1, 3, -3} m/s x {0, 1, 3} rad/s. Source: ratt.tex, Section VI, common parameters."""
 
-ON_TOP = 1e-9
-"""A predicted range [m] below this is refused: the bearing has no derivative there."""
-
 
 STATE_UNITS = ("m", "m", "m/s", "m/s", "m", "m/s")
 """Units of a target's state: x, y, velocity in x and y, height, climb rate."""
@@ -370,8 +367,9 @@ class Scenario(ProblemRecord):
 
     def _check_ranges(self) -> None:
         apart = np.linalg.norm(self.predicted_poses[:, None, :2] - self.predicted_targets[None], axis=-1)
-        if apart.min() < ON_TOP:
-            e, j = (int(k) for k in np.argwhere(apart < ON_TOP)[0])
+        on_top = apart < 1e-9  # [m]; the bearing has no derivative there
+        if on_top.any():
+            e, j = (int(k) for k in np.argwhere(on_top)[0])
             rule = f"must not end on top of target {j}'s predicted position (range 0 has no bearing)"
             raise InputError(
                 f"robots[{self.robot[e]}] with control {self.element_labels[e]}",

@@ -38,8 +38,6 @@ at most 0.086 m/s forward, never backward, and 0.57 rad/s to either side."""
 
 LONGEST_GAP = 2.0
 """Poses are interpolated between rows at most this far apart [s]."""
-RELATIVE_TIME = 1e8
-"""Times below this are seconds since the start, others are Unix times (the dataset is from 2009)."""
 
 
 def from_mrclam(
@@ -97,7 +95,7 @@ def from_mrclam(
 def _instant(data: MrclamData, time: float) -> float:
     first = max(poses[0, 0] for poses in data.poses)
     last = min(poses[-1, 0] for poses in data.poses)
-    instant = first + time if time < RELATIVE_TIME else time
+    instant = first + time if time < 1e8 else time  # a Unix time: the dataset is from 2009
     if not first <= instant <= last:
         rule = f"must be in [0, {last - first:.3f}] seconds since the start, or in [{first:.3f}, {last:.3f}] Unix time"
         raise InputError("time", rule, time)

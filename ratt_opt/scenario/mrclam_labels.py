@@ -21,11 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["LabelEvidence", "Sightings", "pose_at"]
 
-FIT_RANGE, FIT_BEARING = 1.0, 0.3
-"""A sighting fits a landmark when its range and bearing agree to within these [m], [rad]."""
-FEWEST, CLEAR = 10, 2.0
-"""Labels are exchanged if at least this many of their sightings fit then, and this many times more than as labelled."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LabelEvidence:
@@ -74,8 +69,11 @@ class Sightings:
                 nearest[k] += best[named == subject].sum(axis=0)
         return cls(subjects, made, fits, nearest)
 
-    def corrections(self) -> dict[int, int]:
-        """Subject named -> subject meant, of the labels that the sightings clearly say are exchanged."""
+    def corrections(self, fewest: int = 10, clear: float = 2.0) -> dict[int, int]:
+        """Subject named -> subject meant, of the labels that the sightings clearly say are exchanged.
+
+        ``fewest`` : of their sightings that fit then; ``clear`` : times as many as fit as labelled
+        """
         from scipy.optimize import linear_sum_assignment
 
         count = len(self.subjects)
@@ -83,7 +81,7 @@ class Sightings:
         found: dict[int, int] = {}
         for cycle in _cycles(meant.tolist()):
             labelled, corrected = (int(self.nearest[cycle, end].sum()) for end in (cycle, meant[cycle]))
-            if corrected >= max(FEWEST, CLEAR * labelled):
+            if corrected >= max(fewest, clear * labelled):
                 found |= {self.subjects[k]: self.subjects[int(meant[k])] for k in cycle}
         return dict(sorted(found.items()))
 
@@ -117,12 +115,17 @@ def pose_at(poses: FloatArray, times: FloatArray) -> FloatArray:
     return np.stack([x, y, wrap_angle(heading)], axis=-1)
 
 
-def _fit(poses: FloatArray, rows: FloatArray, places: FloatArray) -> tuple[BoolArray, BoolArray]:
-    """(K, L) whether each sighting fits each landmark, and whether it also is nearest to it."""
+def _fit(
+    poses: FloatArray, rows: FloatArray, places: FloatArray, within: tuple[float, float] = (1.0, 0.3)
+) -> tuple[BoolArray, BoolArray]:
+    """(K, L) whether each sighting fits each landmark, and whether it also is nearest to it.
+
+    ``within`` : range and bearing of one that fits agree to within these [m], [rad]
+    """
     here = pose_at(poses, rows[:, 0])
     expected = measure(here[:, None], places[None])
-    close = np.abs(expected[..., 0] - rows[:, 2:3]) < FIT_RANGE
-    close &= np.abs(wrap_angle(expected[..., 1] - rows[:, 3:4])) < FIT_BEARING
+    close = np.abs(expected[..., 0] - rows[:, 2:3]) < within[0]
+    close &= np.abs(wrap_angle(expected[..., 1] - rows[:, 3:4])) < within[1]
     angle = here[:, 2] + rows[:, 3]
     sighted = here[:, :2] + rows[:, 2:3] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     apart = np.linalg.norm(sighted[:, None] - places, axis=-1)

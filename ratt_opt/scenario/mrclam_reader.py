@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["MrclamData", "opened_mrclam", "read_mrclam"]
 
-LARGEST_IDENTIFIER = 10**9
-"""Largest identifier: far above any subject or barcode, and exact as a float."""
 
 _POSE_FILES = ("Robot{}_Groundtruth.dat", "Robot{}_Pose_estimated.dat")
 """Pose files in order of preference: the dataset's own ground truth, then poses estimated from its measurements."""
@@ -160,8 +158,9 @@ def _table(
 
 
 def _check_identifier(where: str, value: float, others: Sequence[float]) -> None:
-    if not (value.is_integer() and 0 <= value <= LARGEST_IDENTIFIER):
-        raise FileFormatError(where, f"must name subjects and barcodes by integers in [0, {LARGEST_IDENTIFIER}]", value)
+    largest = 10**9  # far above any subject or barcode, and exact as a float
+    if not (value.is_integer() and 0 <= value <= largest):
+        raise FileFormatError(where, f"must name subjects and barcodes by integers in [0, {largest}]", value)
     if value in others:
         raise FileFormatError(where, "must not repeat a subject or barcode", int(value))
 

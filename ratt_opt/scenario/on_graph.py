@@ -22,8 +22,6 @@ __all__ = ["graph_scenario"]
 PLACES = (("longitude", "latitude"), ("lon", "lat"), ("x", "y"))
 """Attributes that say where a node is, in small letters; the first pair that any node has is taken."""
 EARTH = ("longitude", "lon")
-FARTHEST = 1e9
-"""A number beyond it is no place."""
 
 
 def graph_scenario(
@@ -99,7 +97,7 @@ def _place(attributes: dict[str, object], keys: tuple[str, str]) -> tuple[float,
         x, y = (float(_number(attributes.get(key))) for key in keys)
     except (TypeError, ValueError):
         return None
-    return (x, y) if abs(x) < FARTHEST and abs(y) < FARTHEST else None
+    return (x, y) if max(abs(x), abs(y)) < 1e9 else None  # a number beyond it is no place
 
 
 def _number(value: object) -> float | str:

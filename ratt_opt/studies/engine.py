@@ -34,10 +34,6 @@ class SweepError(Exception):
 
 
 AGAIN = "finished rows are kept, run the same command to resume"
-PATIENCE = 60.0
-"""Seconds that a cluster may be without any worker before the sweep ends; one that restarts is back by then."""
-LOOKS = 5.0
-"""Seconds between two looks at the cluster while no trial ends."""
 
 
 def run(
@@ -135,20 +131,26 @@ def _run_here(study: Study, case: int, trial: int) -> Future[dict[str, Cell]]:
     return future
 
 
-def _finished(futures: Iterable[Future[dict[str, Cell]]], executor: Executor) -> Iterator[Future[dict[str, Cell]]]:
-    """Yield trials as they end; a cluster whose workers are all gone for long is a :class:`SweepError`."""
+def _finished(
+    futures: Iterable[Future[dict[str, Cell]]], executor: Executor, patience: float = 60.0, look: float = 5.0
+) -> Iterator[Future[dict[str, Cell]]]:
+    """Yield trials as they end; a cluster whose workers are all gone for long is a :class:`SweepError`.
+
+    ``patience`` : seconds that it may be without any worker; one that restarts is back by then.
+    ``look`` : seconds between two looks at the cluster while no trial ends.
+    """
     waiting, seen_at = set(futures), monotonic()
     while waiting:
         try:
-            for future in as_completed(waiting, timeout=LOOKS):
+            for future in as_completed(waiting, timeout=look):
                 waiting.discard(future)
                 seen_at = monotonic()
                 yield future
         except TimeoutError:
             if has_workers(executor):
                 seen_at = monotonic()
-            elif monotonic() - seen_at > PATIENCE:
-                raise SweepError(f"the cluster has had no worker for {PATIENCE:g} s; {AGAIN}") from None
+            elif monotonic() - seen_at > patience:
+                raise SweepError(f"the cluster has had no worker for {patience:g} s; {AGAIN}") from None
 
 
 def _keep_finished(

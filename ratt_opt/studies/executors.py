@@ -18,9 +18,6 @@ if TYPE_CHECKING:
 
 __all__ = ["dask_cluster", "has_workers", "local_processes", "open_executor", "share_modules"]
 
-PATIENCE = 10
-"""Seconds to wait for a scheduler to answer, and for its first worker."""
-
 
 @contextmanager
 def open_executor(cluster: str | None, workers: int | None) -> Iterator[Executor]:
@@ -55,8 +52,10 @@ def has_workers(executor: Executor) -> bool:
 
 
 @contextmanager
-def dask_cluster(address: str) -> Iterator[Executor]:
+def dask_cluster(address: str, patience: float = 10.0) -> Iterator[Executor]:
     """Use the workers of a running Dask scheduler; a worker that dies has its trials run elsewhere.
+
+    ``patience`` : seconds to wait for it to answer, and for its first worker.
 
     Raises
     ------
@@ -67,13 +66,13 @@ def dask_cluster(address: str) -> Iterator[Executor]:
     except ImportError:
         raise InputError("cluster", "needs Dask: install the extra 'cluster'", "no module 'distributed'") from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client = Client(address, timeout=patience, set_as_default=False)
     except (OSError, ValueError, TypeError):
-        rule = f"must be the address of a Dask scheduler that answers within {PATIENCE} s"
+        rule = f"must be the address of a Dask scheduler that answers within {patience:g} s"
         raise InputError("cluster", rule, address) from None
     # The engine says in one line what it would log of a lost scheduler.
     with _silenced("distributed", "tornado"), client:
-        _check_workers(client, address)
+        _check_workers(client, address, patience)
         yield client.get_executor(pure=False)
 
 
@@ -91,12 +90,12 @@ def _silenced(*packages: str) -> Iterator[None]:
             log.setLevel(level)
 
 
-def _check_workers(client: Client, address: str) -> None:
+def _check_workers(client: Client, address: str, patience: float) -> None:
     """Ask every worker for the versions its rows would carry."""
     try:
-        client.wait_for_workers(1, timeout=PATIENCE)
+        client.wait_for_workers(1, timeout=patience)
     except TimeoutError:
-        raise InputError("cluster", f"must have a worker within {PATIENCE} s", f"none at {address}") from None
+        raise InputError("cluster", f"must have a worker within {patience:g} s", f"none at {address}") from None
     # A standard-library function, so that a worker without the package can still be asked.
     from pkgutil import resolve_name
 

@@ -12,9 +12,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Progress"]
 
-LINE_EVERY = 10.0
-"""Seconds between plain lines."""
-
 
 class Progress:
     """Reports to standard error, so that standard output stays for results."""
@@ -47,7 +44,8 @@ def _bar(name: str, total: int, done: int) -> Iterator[Callable[[], None]]:
 
 
 @contextmanager
-def _lines(name: str, total: int, done: int) -> Iterator[Callable[[], None]]:
+def _lines(name: str, total: int, done: int, apart: float = 10.0) -> Iterator[Callable[[], None]]:
+    """Print plain lines, at least ``apart`` seconds from each other."""
     began = said = time.monotonic()
     finished = done
 
@@ -58,7 +56,7 @@ def _lines(name: str, total: int, done: int) -> Iterator[Callable[[], None]]:
         nonlocal finished, said
         finished += 1
         now = time.monotonic()
-        if now - said >= LINE_EVERY and finished < total:
+        if now - said >= apart and finished < total:
             said = now
             left = (now - began) / (finished - done) * (total - finished)
             say(f", about {left:.0f} s left")

@@ -5,11 +5,13 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from ratt_opt import InputError
+from ratt_opt.studies import executors
 from ratt_opt.studies.engine import run
 from ratt_opt.studies.executors import open_executor
 from ratt_opt.studies.progress import Progress
@@ -21,7 +23,7 @@ from tests.studies.toy import STUDY
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A loaded machine may answer later than a user would wait; what is tested here is what is answered."""
-    monkeypatch.setattr("ratt_opt.studies.executors.PATIENCE", SLOW)
+    monkeypatch.setattr(executors, "dask_cluster", partial(executors.dask_cluster, patience=SLOW))
 
 
 def test_a_killed_worker_changes_nothing(tmp_path: Path) -> None:

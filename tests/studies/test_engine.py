@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -404,7 +405,6 @@ class _NoWorkers(ThreadPoolExecutor):
 
 
 def test_a_cluster_that_lost_its_workers_is_a_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(engine, "LOOKS", 0.02)
-    monkeypatch.setattr(engine, "PATIENCE", 0.1)
+    monkeypatch.setattr(engine, "_finished", partial(engine._finished, patience=0.1, look=0.02))
     with _NoWorkers(1) as executor, pytest.raises(SweepError, match=r"no worker for 0\.1 s; finished rows are kept"):
         run(STUDY, tmp_path, executor, trials=1, progress=Progress())

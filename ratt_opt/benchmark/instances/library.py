@@ -20,8 +20,6 @@ __all__ = ["BEST", "INDEX", "BenchmarkLibrary", "Best", "IndexEntry"]
 
 INDEX, BEST, INSTANCES, RECORDS = "library.csv", "best.csv", "instances", "records"
 """Files and folders of a library."""
-LARGEST_TABLE = 16 * 2**20
-"""Bytes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -168,14 +166,14 @@ def _fits(entry: IndexEntry, word: str) -> bool:
     return entry.name.startswith(word) or entry.code.startswith(word)
 
 
-def _rows(path: Path, kind: type[IndexEntry | Best]) -> list[dict[str, Any]]:
-    """Lines of a table with the columns of a record, as the types of its fields."""
+def _rows(path: Path, kind: type[IndexEntry | Best], most: int = 16 * 2**20) -> list[dict[str, Any]]:
+    """Lines of a table of at most that many bytes, with the columns of a record, as the types of its fields."""
     try:
         raw = path.read_bytes()
     except OSError as error:
         raise FileFormatError(str(path), "must be a file that can be read", error.strerror or "unreadable") from None
-    if len(raw) > LARGEST_TABLE:
-        raise FileFormatError(str(path), f"must be at most {LARGEST_TABLE} bytes", len(raw))
+    if len(raw) > most:
+        raise FileFormatError(str(path), f"must be at most {most} bytes", len(raw))
     try:
         lines = list(csv.reader(io.StringIO(raw.decode("utf-8"), newline=""), strict=True))
     except (UnicodeDecodeError, csv.Error) as error:

@@ -14,23 +14,22 @@ from ratt_opt.errors import UndecidedError
 if TYPE_CHECKING:
     from ratt_opt.problem import Problem
 
-__all__ = ["MOST_CASES", "best_worst_case", "cases_of"]
-
-MOST_CASES = 3_000_000
-"""Plans times families of groups that are compared."""
-MOST_ATTACKS = 400_000
+__all__ = ["best_worst_case", "cases_of"]
 
 
-def best_worst_case(problem: Problem) -> float:
+def best_worst_case(problem: Problem, most_cases: int = 3_000_000, most_attacks: int = 400_000) -> float:
     """The largest worst case of any plan.
+
+    ``most_cases`` : plans times families of groups that are compared; ``most_attacks`` : attacks that are looked at.
+    Larger problems take more than minutes.
 
     Raises
     ------
     UndecidedError : there are too many attacks or plans.
     """
-    families = _families(problem)
+    families = _families(problem, most_attacks)
     plans = prod(len(choice) for choice in problem.choices)
-    if plans * len(families) > MOST_CASES:
+    if plans * len(families) > most_cases:
         raise UndecidedError(f"too many cases to enumerate: {plans} plans, {len(families)} families of groups")
     known: dict[tuple[int, ...], float] = {}
 
@@ -58,9 +57,9 @@ def cases_of(problem: Problem) -> int:
     return blinded * sum(comb(links, k) for k in range(min(problem.alpha_c, links) + 1))
 
 
-def _families(problem: Problem) -> list[tuple[tuple[int, ...], ...]]:
+def _families(problem: Problem, most_attacks: int) -> list[tuple[tuple[int, ...], ...]]:
     """Families of groups that attacks leave, each once: robots that still see."""
-    if cases_of(problem) > MOST_ATTACKS:
+    if cases_of(problem) > most_attacks:
         raise UndecidedError(f"too many attacks to enumerate: {cases_of(problem)}")
     robots = [i for i in range(problem.n_robots) if i not in problem.protected_robots]
     links = sorted(problem.communication.links - problem.protected_links)

@@ -13,7 +13,8 @@ from ratt_opt._validation import check_integer
 from ratt_opt._version import __version__
 from ratt_opt.benchmark.instances.instance import read_document
 from ratt_opt.benchmark.instances.library import BenchmarkLibrary, Best, hash_of
-from ratt_opt.benchmark.proofs.verification import SECONDS, verify_record
+from ratt_opt.benchmark.proofs.verification import verify_record
+from ratt_opt.certificates.verifier.limits import SECONDS
 from ratt_opt.errors import InputError, ProofError, UndecidedError
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from ratt_opt.benchmark.proofs.enumeration import best_worst_case
 from ratt_opt.benchmark.proofs.relaxation import as_information, value_at_least, value_at_most
 from ratt_opt.certificates.agreement import differences
 from ratt_opt.certificates.verifier.edge_cuts import CUTS_FORMAT, verify_cuts
+from ratt_opt.certificates.verifier.limits import SECONDS
 from ratt_opt.certificates.verifier.verify import verify_document
 from ratt_opt.errors import InputError, ProofError
 from ratt_opt.scenario.information_input import InformationInput
@@ -23,8 +24,6 @@ __all__ = ["ENUMERATION", "Proved", "proved_bound", "stated_problem", "verify_re
 
 ENUMERATION = "ratt-opt enumeration"
 """Format of a certificate that says: the problem is small, enumerate it."""
-SECONDS = 300.0
-"""Limit for valuing one answer, and for verifying one certificate."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -24,7 +24,6 @@ __all__ = ["CLOSE", "gap_figure", "profile_figure", "steps_of"]
 
 CLOSE = 1e-2
 """Gap to the best known value at which a profile calls an instance solved."""
-MOST_FACTOR = 1e3
 TRACKS = {"P": "plans", "A": "attacks", "C": "cuts"}
 
 
@@ -33,8 +32,8 @@ def steps_of(row: Mapping[str, str]) -> list[tuple[float, float]]:
     return [(float(at), float(gap)) for at, gap in json.loads(row["steps"])]
 
 
-def profile_figure(rows: Mapping[str, SolverRows]) -> Figure:
-    """Draw the shares of instances solved within a factor of the best solver's time."""
+def profile_figure(rows: Mapping[str, SolverRows], most: float = 1e3) -> Figure:
+    """Draw the shares of instances solved within a factor, up to ``most``, of the best solver's time."""
 
     def draw(axes: Axes, group: dict[str, SolverRows], track: str) -> None:
         shared = sorted(set.intersection(*({row["instance"] for row in some} for some in group.values())))
@@ -44,10 +43,10 @@ def profile_figure(rows: Mapping[str, SolverRows]) -> Figure:
             times[solver] = [time_to(steps_of(by[name]), CLOSE) for name in shared]
         for solver, curve in (profile(times) if shared else {}).items():
             end = curve.shares[-1:] if len(curve.shares) else np.zeros(1)
-            x = np.concatenate([[1.0], curve.factors, [MOST_FACTOR]])
+            x = np.concatenate([[1.0], curve.factors, [most]])
             y = np.concatenate([[0.0], curve.shares, end])
             axes.step(x, y, where="post", color=looks[solver].colour, label=literal(solver))
-        axes.set(xscale="log", xlim=(1, MOST_FACTOR), ylim=(0, 1.02), ylabel=f"share of {len(shared)} {track}")
+        axes.set(xscale="log", xlim=(1, most), ylim=(0, 1.02), ylabel=f"share of {len(shared)} {track}")
         axes.set_xlabel("time to within 1 % of the best known value, over the best solver's [1]")
 
     return _panels(rows, draw)

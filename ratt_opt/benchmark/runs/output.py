@@ -16,9 +16,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Output", "Report", "read_output"]
 
-MOST_FAULTS = 5
-"""Faults of one run that are listed."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Report:
@@ -42,8 +39,11 @@ class Output:
     faults: tuple[str, ...]
 
 
-def read_output(instance: BenchmarkInstance, run: Run) -> Output:
-    """Read what a run printed; a line that is none, or an answer that is none, is a fault and costs only itself."""
+def read_output(instance: BenchmarkInstance, run: Run, most_faults: int = 5) -> Output:
+    """Read what a run printed; a line that is none, or an answer that is none, is a fault and costs only itself.
+
+    ``most_faults`` : of the run that are listed; more are counted.
+    """
     reports, faults = [], []
     for number, line in enumerate(run.lines, start=1):
         if not line.text.strip():
@@ -67,8 +67,8 @@ def read_output(instance: BenchmarkInstance, run: Run) -> Output:
         faults.append("left processes behind, which were killed")
     if not any(report.answer for report in reports):
         faults.append("printed no answer")
-    more = [f"and {len(faults) - MOST_FAULTS} more faults"] if len(faults) > MOST_FAULTS else []
-    return Output(reports=tuple(reports), faults=(*faults[:MOST_FAULTS], *more))
+    more = [f"and {len(faults) - most_faults} more faults"] if len(faults) > most_faults else []
+    return Output(reports=tuple(reports), faults=(*faults[:most_faults], *more))
 
 
 def _report(instance: BenchmarkInstance, line: Line) -> Report:

@@ -25,17 +25,19 @@ if TYPE_CHECKING:
 __all__ = ["Limits", "Line", "Run", "run_command"]
 
 MARK = "RATT_OPT_BENCH_RUN"
-POLL = 0.05
-"""Seconds between two looks at the clock."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits of one run: the ``seconds`` it is told, the ``grace`` [s] until it is killed, ``most_bytes`` it prints."""
+    """Limits of one run: the ``seconds`` it is told, the ``grace`` [s] until it is killed, ``most_bytes`` it prints.
+
+    ``poll`` : seconds between two looks at the clock; fewer cost the solver's machine time.
+    """
 
     seconds: float
     grace: float = 2.0
     most_bytes: int = 16 * 2**20
+    poll: float = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +123,7 @@ def _read(process: subprocess.Popen[bytes], began: float, limits: Limits) -> tup
             killed = f"killed {limits.grace:g} s after its {limits.seconds:g} s"
             break
         with suppress(Empty):
-            at, chunk = chunks.get(timeout=POLL)
+            at, chunk = chunks.get(timeout=limits.poll)
             if not chunk:
                 break
             size += len(chunk)
@@ -134,7 +136,7 @@ def _read(process: subprocess.Popen[bytes], began: float, limits: Limits) -> tup
         if process.poll() is not None and chunks.empty():
             break
     if not killed:
-        _wait(process, began + limits.seconds + limits.grace)
+        _wait(process, began + limits.seconds + limits.grace, limits.poll / 5)
         if process.poll() is None:
             killed = f"killed {limits.grace:g} s after its {limits.seconds:g} s"
     if rest:
@@ -155,9 +157,9 @@ def _pump(process: subprocess.Popen[bytes], began: float, chunks: Queue[tuple[fl
             return
 
 
-def _wait(process: subprocess.Popen[bytes], until: float) -> None:
+def _wait(process: subprocess.Popen[bytes], until: float, pause: float) -> None:
     while process.poll() is None and time.monotonic() < until:
-        time.sleep(POLL / 5)
+        time.sleep(pause)
 
 
 def _end(process: subprocess.Popen[bytes], mark: str) -> bool:

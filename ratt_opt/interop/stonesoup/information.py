@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 
 __all__ = ["mapped_by", "node_information", "notes_of"]
 
-MOST_COMBINATIONS = 100_000
-"""Largest number of combinations of one node's actions; every one holds a matrix for each target."""
 Choices = tuple["Sequence[Option | None]", ...]
 """Choices of each platform or sensor of a node; ``None`` leaves it as it stands now."""
 
 
 def node_information(
-    node: Node, choices: Choices, timestamp: datetime, forecast: Forecast, updater: Any = None
+    node: Node, choices: Choices, timestamp: datetime, forecast: Forecast, updater: Any = None, *, most: int = 100_000
 ) -> FloatArray:
     """(K, M, D, D) information of the K combinations of ``choices``, the last of them changing fastest.
+
+    ``most`` : combinations that are accepted; every one holds a matrix for each target.
 
     Nothing of Stone Soup's objects is moved: actions are carried out by copies.
 
@@ -41,8 +41,8 @@ def node_information(
     InputError : there are too many combinations, or a sensor does not fit the tracks.
     """
     count = prod(map(len, choices))
-    if count > MOST_COMBINATIONS:
-        rule = f"must have at most {MOST_COMBINATIONS} combinations of actions: make their resolution coarser"
+    if count > most:
+        rule = f"must have at most {most} combinations of actions: make their resolution coarser"
         raise InputError(title(node.name), rule, count)
     if node.platform is None:
         controllers, choices = [node.sensors[0].movement_controller], (_HERE, *choices)

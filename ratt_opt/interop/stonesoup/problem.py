@@ -30,9 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["PlanningStep", "TeamProblem"]
 
-DIGITS = 1e-12
-"""Information that differs by less than this share of its largest entry is the same; the first action is kept."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlanningStep:
@@ -192,11 +189,11 @@ def _in(
 
 
 def _distinct(information: FloatArray) -> IntArray:
-    """The first of every set of equal combinations, ascending."""
+    """The first of every set of combinations that are equal to 1e-12 of the largest entry, ascending."""
     rows = information.reshape(len(information), -1)
     scale = np.abs(rows).max(axis=0, initial=0.0)
     # 0 is added since the bytes of -0 differ from those of 0.
-    digits = np.round(rows / np.where(scale > 0, scale * DIGITS, 1.0)) + 0.0
+    digits = np.round(rows / np.where(scale > 0, scale * 1e-12, 1.0)) + 0.0
     firsts = {row.tobytes(): k for k, row in reversed(list(enumerate(digits)))}
     return np.sort(list(firsts.values()))
 

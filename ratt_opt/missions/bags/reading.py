@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Detection", "PoseMessage", "read_bag"]
 
-NANOSECONDS = 1e-9
 DEFINITIONS = {
     "vision_msgs/msg/ObjectHypothesis": "string class_id\nfloat64 score\n",
     "vision_msgs/msg/ObjectHypothesisWithPose": "vision_msgs/ObjectHypothesis hypothesis\n"
@@ -136,7 +135,7 @@ def _check_topics(path: Path, topics: Collection[str], there: Collection[str]) -
 
 def _told(path: Path, topic: str, kind: str, message: Any) -> Iterator[PoseMessage | Detection]:
     """Yield the poses or detections of one message."""
-    time = message.header.stamp.sec + NANOSECONDS * message.header.stamp.nanosec if hasattr(message, "header") else 0.0
+    time = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec if hasattr(message, "header") else 0.0
     if kind.endswith(("/Odometry", "/PoseWithCovarianceStamped")):
         yield PoseMessage(topic, time, _pose(message.pose.pose), _pose_covariance(message.pose.covariance))
     elif kind.endswith("/PoseStamped"):

@@ -21,23 +21,19 @@ if TYPE_CHECKING:
 
 __all__ = ["save_gif"]
 
-MILLISECONDS = 250
-"""Each picture is shown so long."""
-WIDTH = 6.4
-"""Size of the picture [inch]."""
 ROLES = {"best group": (SURVIVING, "o"), "cut off": (LOST, "s"), "blinded": (BLINDED, "X")}
 
 
-def save_gif(mission: FlownMission, path: Path) -> None:
-    """Write the animation."""
+def save_gif(mission: FlownMission, path: Path, width: float = 6.4, duration: int = 250) -> None:
+    """Write the animation, whose pictures are ``width`` inches wide and shown for a ``duration`` [ms] each."""
     from PIL import Image
 
     frames = frames_of(mission)
     view = limits(frames)
-    height = min(max(WIDTH * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 2 * WIDTH) + 1.2
+    height = min(max(width * (view[3] - view[2]) / (view[1] - view[0]), 2.0), 2 * width) + 1.2
     pictures, kind = [], imported_whole("matplotlib.figure").Figure
     for frame, rmse in zip(frames, mission.rmse, strict=True):
-        figure = kind(figsize=(WIDTH, height), layout="constrained")
+        figure = kind(figsize=(width, height), layout="constrained")
         axes = figure.subplots()
         _draw(axes, frame)
         axes.set_xlim(view[0], view[1])
@@ -51,7 +47,7 @@ def save_gif(mission: FlownMission, path: Path) -> None:
         figure.savefig(buffer, dpi=80, format="png")
         pictures.append(Image.open(buffer).convert("P", palette=Image.Palette.ADAPTIVE, colors=64))
     first, *rest = pictures
-    first.save(path, format="GIF", save_all=True, append_images=rest, duration=MILLISECONDS, loop=0)
+    first.save(path, format="GIF", save_all=True, append_images=rest, duration=duration, loop=0)
 
 
 def _draw(axes: Axes, frame: dict[str, Any]) -> None:

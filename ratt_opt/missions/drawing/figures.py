@@ -23,11 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = ["mission_figure"]
 
-TITLE = 70
-"""Letters of a line of the title: as many as are as wide as the figure."""
-FEW_TICKS = 20.0
-"""Span of an axis, as a factor, below which the ticks between powers of ten have numbers too."""
-
 
 def mission_figure(missions: Sequence[FlownMission]) -> Figure:
     """RMSE above NEES, step by step; of several seeds the mean with its 95 % interval (Student's t).
@@ -53,12 +48,13 @@ def mission_figure(missions: Sequence[FlownMission]) -> Figure:
     below.set_yscale("log")
     below.yaxis.set_major_formatter("{x:g}")
     low, high = below.get_ylim()
-    below.yaxis.set_minor_formatter("{x:g}" if high < FEW_TICKS * low else "")
+    # On a wider axis the ticks between powers of ten would have numbers that touch.
+    below.yaxis.set_minor_formatter("{x:g}" if high < 20 * low else "")
     for axes in (above, below):
         axes.legend(frameon=False, fontsize=8.5)
         axes.grid(visible=True, color="#eeeeee", linewidth=0.8)
     said = (f"{name} {literal(str(first.settings[name]))}" for name in ("planner", "attacker", "attacks"))
-    above.set_title(fill(", ".join(said), TITLE), fontsize="medium")
+    above.set_title(fill(", ".join(said)), fontsize="medium")  # lines of 70 letters are as wide as the figure
     choose_fonts(figure)
     return figure
 

@@ -15,17 +15,18 @@ if TYPE_CHECKING:
 
 __all__ = ["MOST_LINKS", "frames_of", "limits"]
 
-ENDLESS = 0.15
-"""Radius of a field of view without a limit of range, as a share of the diagonal of all places."""
 MOST_LINKS = 80
 """Links drawn of a kind in one picture; of more, the first ones by their robots' numbers."""
 
 
-def frames_of(mission: FlownMission) -> list[dict[str, Any]]:
-    """One picture a step: robots with roles, links left and cut, targets with what the team believes of them."""
+def frames_of(mission: FlownMission, unlimited: float = 0.15) -> list[dict[str, Any]]:
+    """One picture a step: robots with roles, links left and cut, targets with what the team believes of them.
+
+    ``unlimited`` : radius of a field of view without a limit of range, as a share of the diagonal of all places.
+    """
     views = views_of(mission.scenario)
     limited = any(view.angle is not None or view.reach is not None for view in views)
-    endless = ENDLESS * _across(mission)
+    endless = unlimited * _across(mission)
     fields = [_field(view, endless) for view in views] if limited else []
     return [_frame(number, step) | {"fields": fields} for number, step in enumerate(mission.steps, start=1)]
 

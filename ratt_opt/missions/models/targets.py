@@ -28,11 +28,6 @@ __all__ = [
     "target_motion",
 ]
 
-ON_GRID = 1e-9
-"""Times within this share of a sampling period count as its end."""
-STRAIGHT = 1e-4
-"""Angles turned in a step [rad] below this use the series of the coordinated turn, whose error is then below 1e-13."""
-
 
 class TargetMotion(ABC):
     """All targets' motion over one period; states (..., M, d) begin with the position x, y [m].
@@ -284,7 +279,7 @@ def target_motion(motion: str | TargetMotion, scenario: Scenario) -> TargetMotio
 
 def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """``sin(wT)/w`` and ``(1 - cos(wT))/w`` with their derivatives by ``w``, by series if ``wT`` is small."""
-    small = np.abs(rate * period) < STRAIGHT
+    small = np.abs(rate * period) < 1e-4  # the error of the series is then below 1e-13
     w = np.where(small, 1.0, rate)
     sine, cosine = np.sin(w * period), np.cos(w * period)
     square = (rate * period) ** 2
@@ -297,8 +292,9 @@ def _turn(rate: FloatArray, period: float) -> tuple[FloatArray, FloatArray, Floa
 
 def _cells(time: float, period: float, cell: float) -> tuple[FloatArray, FloatArray]:
     """Numbers (C,) of the sampling periods that ``[time, time + period]`` touches, and seconds (C,) spent in each."""
-    first = int(np.floor(time / cell + ON_GRID))
-    last = max(int(np.ceil((time + period) / cell - ON_GRID)), first + 1)
+    on_grid = 1e-9  # times within this share of a period count as its end
+    first = int(np.floor(time / cell + on_grid))
+    last = max(int(np.ceil((time + period) / cell - on_grid)), first + 1)
     cells = np.arange(first, last, dtype=np.float64)
     if len(cells) == 1:
         return cells, np.array([period])

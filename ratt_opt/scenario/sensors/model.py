@@ -16,15 +16,6 @@ if TYPE_CHECKING:
 
 __all__ = ["SensorModel"]
 
-POSE_STEP = 1e-5
-"""Step of a pose [m], [rad], for central differences: errors of 1e-10 of the curvature, and 1e-11 of rounding."""
-
-
-POINT_STEP, BEND_STEP = 6e-6, 1e-3
-"""Steps of differences of a point, per metre of its distance from the origin and at least per metre.
-The first is the cube root of a rounding, at which central differences err by about 1e-10. The second, wider one makes
-second derivatives of these good to 1e-6."""
-
 
 class SensorModel(ABC):
     """Measurements (..., k) of points (..., r) from poses (..., 3 or 4) x [m], y [m], heading [rad], height [m].
@@ -54,11 +45,13 @@ class SensorModel(ABC):
 
     def jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., k, r) derivative by the point; central differences, to some ten digits, unless a subclass knows it."""
-        return _slopes(lambda x: self.measure(poses, x), points, POINT_STEP, self.surprise)
+        step = 6e-6  # the cube root of a rounding, at which central differences err by about 1e-10
+        return _slopes(lambda x: self.measure(poses, x), points, step, self.surprise)
 
     def hessian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., k, r, r) second derivative by the point; differences of :meth:`jacobian`, to some four digits."""
-        return _slopes(lambda x: self.jacobian(poses, x), points, BEND_STEP, np.subtract)
+        step = 1e-3  # wider, which makes second derivatives of differences good to 1e-6
+        return _slopes(lambda x: self.jacobian(poses, x), points, step, np.subtract)
 
     @abstractmethod
     def noise(self, poses: FloatArray, points: FloatArray) -> FloatArray:
@@ -113,10 +106,10 @@ class SensorModel(ABC):
 
     def pose_jacobian(self, poses: FloatArray, points: FloatArray) -> FloatArray:
         """(..., k, 3 or 4) derivative by the pose, by central differences unless a subclass knows better."""
-        columns = []
-        for step in POSE_STEP * np.eye(poses.shape[-1]):
+        columns, width = [], 1e-5  # [m], [rad]: errors of 1e-10 of the curvature, and 1e-11 of rounding
+        for step in width * np.eye(poses.shape[-1]):
             ends = [self.measure(poses + sign * step, points) for sign in (1, -1)]
-            columns.append(self.surprise(*ends) / (2 * POSE_STEP))
+            columns.append(self.surprise(*ends) / (2 * width))
         return np.stack(columns, axis=-1)
 
     def pointed_at(self, poses: FloatArray, measured: FloatArray) -> FloatArray | None:  # noqa: ARG002

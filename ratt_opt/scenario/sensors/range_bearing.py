@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 __all__ = ["BearingOnly", "RangeBearing", "RangeOnly"]
 
-SILENT = 1e-12
-"""Directions whose information is below this share of the largest are not measured."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RangeBearing(ByValue, SensorModel):
@@ -84,7 +81,8 @@ class RangeBearing(ByValue, SensorModel):
         if not states_information(self.sensor):
             return super().disturbance(poses, points, luck)
         values, vectors = np.linalg.eigh(self.weights(poses, points))
-        scale = np.where(values > SILENT * values[..., -1:], 1 / np.sqrt(np.maximum(values, np.finfo(float).tiny)), 0.0)
+        is_measured = values > 1e-12 * values[..., -1:]  # below it is what rounding leaves of no information
+        scale = np.where(is_measured, 1 / np.sqrt(np.maximum(values, np.finfo(float).tiny)), 0.0)
         along = np.swapaxes(vectors, -1, -2) @ luck[..., None]  # the symmetric root: vectors have no sign of their own
         return np.asarray((vectors @ (scale[..., None] * along))[..., 0])
 
