@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt._validation import check_integer
-from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
+from ratt_opt.bounds.guarantees import Curvatures, Guarantee, Share, needs_of, one_curvature
 from ratt_opt.bounds.params import DEFAULT
 from ratt_opt.budget import Budget
 from ratt_opt.graph.largest_group.annealed_cut import annealed_cut
@@ -74,12 +74,11 @@ def group_size_bound(g: int, *, k: Curvatures = None, c: Curvatures = None, bait
     bound = group_size_share(g, keep, submodular=kind == "k")
     greedy = 1.0 if g <= 1 else 1 / (1 + value) if kind == "k" else keep
     uses_curvature = g > 1 and (kind == "c" or not baits_survive)
-    needs = [SUBMODULAR if kind == "k" else NON_DECREASING]
-    needs += [f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}"] if uses_curvature else []
-    needs += [f"groups of at most {g} unblinded robots", "RATT's plan"]
+    of_class, curved, *rest = needs_of(kind, f"groups of at most {g} unblinded robots", "RATT's plan")
+    needs = (of_class, *([curved] if uses_curvature else []), *rest)
     theorem = IN_COQ[kind] if g > 1 else "paper_optimal" if baits_survive else None
     proof = f"group_size_bound; in Coq {theorem}" if theorem else "group_size_bound"
-    return Guarantee(bound if baits_survive else min(bound, greedy), tuple(needs), SOURCE, proof)
+    return Guarantee(bound if baits_survive else min(bound, greedy), needs, SOURCE, proof)
 
 
 def group_size_share(g: int, kept: Share, *, submodular: bool) -> Share:

@@ -17,6 +17,7 @@ from ratt_opt.errors import InputError
 __all__ = [
     "Guarantee",
     "all_bait_group_bound",
+    "needs_of",
     "pattern_free_bound",
     "remark1_bound",
     "sensing_only_bound",
@@ -111,7 +112,7 @@ def theorem1_bound(alpha_cs: int, *, k: Curvatures = None, c: Curvatures = None,
         bound = keep if all_bait else min(keep / (1 + value), keep / max(alpha_cs, 1))
     else:
         bound = keep**2 if all_bait else min(keep**3, keep**2 / max(alpha_cs, 1))
-    return Guarantee(bound, _needs(kind, "RATT's plan"), "ratt.tex, Theorem 1", _by_pattern_free(kind))
+    return Guarantee(bound, needs_of(kind, "RATT's plan"), "ratt.tex, Theorem 1", _by_pattern_free(kind))
 
 
 def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -125,7 +126,7 @@ def remark1_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
     """
     kind, value = one_curvature(k, c)
     bound = 1 - value if kind == "k" else (1 - value) ** 2
-    return Guarantee(bound, _needs(kind, "the myopic plan"), "ratt.tex, Remark 1", _by_pattern_free(kind))
+    return Guarantee(bound, needs_of(kind, "the myopic plan"), "ratt.tex, Remark 1", _by_pattern_free(kind))
 
 
 def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarantee:
@@ -139,7 +140,7 @@ def sensing_only_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
     """
     kind, value = one_curvature(k, c)
     bound = (1 - value) / (1 + value) if kind == "k" else (1 - value) ** 3
-    needs = (*_needs(kind, "RATT's plan"), "no link attacks (alpha_c = 0)")
+    needs = needs_of(kind, "RATT's plan", "no link attacks (alpha_c = 0)")
     return Guarantee(bound, needs, "Tzoumas et al. 2018, Theorem 1", _by_pattern_free(kind))
 
 
@@ -170,7 +171,7 @@ def pattern_free_bound(*, k: Curvatures = None, c: Curvatures = None) -> Guarant
     """
     kind, value = one_curvature(k, c)
     bound = 1 - value if kind == "k" else (1 - value) ** 2
-    needs = _needs(kind, "each robot is bait or chosen greedily")
+    needs = needs_of(kind, "each robot is bait or chosen greedily")
     return Guarantee(bound, needs, "pattern-free bound (this library)", _by_pattern_free(kind))
 
 
@@ -198,7 +199,7 @@ def all_bait_group_bound(size: int, *, k: Curvatures = None, c: Curvatures = Non
         bound = (1 + (g - 1) * keep) / g
     else:
         bound = (1 + (g - 1) * keep) / (1 + (g - 1) / keep) if keep > 0 else float(g == 1)
-    needs = _needs(kind, f"a group of {g} bait robots survives")
+    needs = needs_of(kind, f"a group of {g} bait robots survives")
     return Guarantee(bound, needs, "all-bait group bound (this library)", "all_bait_group_bound")
 
 
@@ -218,9 +219,8 @@ def one_curvature(k: Curvatures, c: Curvatures) -> tuple[str, float]:
     return name, value
 
 
-def _needs(kind: str, plan: str) -> tuple[str, ...]:
-    return (
-        SUBMODULAR if kind == "k" else NON_DECREASING,
-        f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
-        plan,
-    )
+def needs_of(kind: str, *more: str) -> tuple[str, ...]:
+    """Hypotheses of a guarantee by a curvature: the function's class, its curvature, and ``more``."""
+    if kind == "k":
+        return (SUBMODULAR, "curvature at most k", *more)
+    return (NON_DECREASING, "total curvature at most c", *more)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ratt_opt._validation import check_integer
-from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, one_curvature
+from ratt_opt.bounds.guarantees import Curvatures, Guarantee, needs_of, one_curvature
 
 __all__ = ["heard_sets_bound"]
 
@@ -42,10 +42,6 @@ def heard_sets_bound(cliques: int, *, k: Curvatures = None, c: Curvatures = None
     kind, value = one_curvature(k, c)
     keep = 1 - value
     bound = keep * (keep + value / cliques) if kind == "k" else keep**2
-    needs = (
-        SUBMODULAR if kind == "k" else NON_DECREASING,
-        f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
-        f"number of cliques of heard robots: {cliques}",
-    )
+    needs = needs_of(kind, f"number of cliques of heard robots: {cliques}")
     proof = f"heard_sets_bound; in Coq {'split_submodular' if kind == 'k' else 'split_total_curvature'}"
     return Guarantee(bound, needs, "heard-sets bound (this library)", proof)

@@ -98,8 +98,8 @@ def instance_bound(
 
 def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget: Budget, params: BoundParams) -> float:
     """Proved value of some robot after any attack over a bound on every plan; ``largest`` (N,) marginals."""
-    single = problem.objective.singletons()
-    kept = -np.sort(-np.append(single[plan[_free_robots(problem)]], 0.0))[problem.threat.n_blinded]
+    single, free = problem.objective.singletons(), ~np.isin(np.arange(problem.n_robots), list(problem.protected_robots))
+    kept = -np.sort(-np.append(single[plan[free]], 0.0))[problem.threat.n_blinded]
     safe = max([kept, *(single[plan[i]] for i in problem.protected_robots)])
     left = np.setdiff1d(np.arange(problem.n_robots), list(strongest_robots(problem)))
     size = min(achievable_group_size(problem, budget, params), len(left))
@@ -109,10 +109,6 @@ def _by_group_size(problem: Problem, plan: IntArray, largest: FloatArray, budget
     # No group whose largest excess is e has more than the largest marginals with an excess up to e.
     most = max(np.sort(largest[left[excess <= e]])[-size:].sum() - e for e in np.unique(excess))
     return float(safe / most) if most > 0 else 1.0
-
-
-def _free_robots(problem: Problem) -> IntArray:
-    return np.setdiff1d(np.arange(problem.n_robots), list(problem.protected_robots)).astype(np.int64)
 
 
 def _best_order(within: Callable[[IntArray, int], float], largest: FloatArray, budget: Budget) -> float:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ratt_opt._validation import check_integer
 from ratt_opt.bounds.guarantees import IN_COQ as PATTERN_FREE_IN_COQ
-from ratt_opt.bounds.guarantees import NON_DECREASING, SUBMODULAR, Curvatures, Guarantee, Share, one_curvature
+from ratt_opt.bounds.guarantees import Curvatures, Guarantee, Share, needs_of, one_curvature
 from ratt_opt.graph.survivor_sizes import iterate_non_dominated_sizes
 
 if TYPE_CHECKING:
@@ -61,12 +61,7 @@ def survivor_bound(size: int, *, k: Curvatures = None, c: Curvatures = None) -> 
     size = check_integer("size", size, low=0)
     kind, value = one_curvature(k, c)
     bound = survivor_share(size, 1 - value, submodular=kind == "k")
-    needs = (
-        SUBMODULAR if kind == "k" else NON_DECREASING,
-        f"{'curvature' if kind == 'k' else 'total curvature'} at most {kind}",
-        f"no group of more than {size} unblinded robots",
-        "RATT's plan",
-    )
+    needs = needs_of(kind, f"no group of more than {size} unblinded robots", "RATT's plan")
     by_size = kind == "c" or bound > 1 - value
     theorem = IN_COQ[kind] if by_size else PATTERN_FREE_IN_COQ[kind]
     return Guarantee(bound, needs, SOURCE, f"survivor_bound; in Coq {theorem}")
