@@ -40,7 +40,8 @@ class WeakFamilies:
         params = self._team.params.family_exchanges
         part = self._budget.part(params.share)
         first = part.part(params.settled_share)
-        for sizes in _spread(vectors, params.stride):
+        apart = (sizes for start in range(params.stride) for sizes in vectors[start :: params.stride])
+        for sizes in apart:  # those far apart first: there may be time for some only
             if families and first.stop() is not None:
                 break
             self._budget.check()
@@ -68,27 +69,17 @@ class WeakFamilies:
 
     def _weak_largest(self, sizes: Sizes, budget: Budget) -> list[frozenset[int]]:
         """Weak sets of the size of a largest group that alone decides what a family is worth."""
-        if _second(sizes) > self._team.params.family_exchanges.clearly * (largest := sizes[0]):
+        params, largest = self._team.params.family_exchanges, sizes[0]
+        if max(sizes[1:], default=0) > params.clearly * largest:
             return []
         if largest not in self._weak:
-            self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[
-                : self._team.params.family_exchanges.weak_sets
-            ]
+            self._weak[largest] = weak_sets_of_size(self._team, largest, budget)[: params.weak_sets]
         return self._weak[largest]
-
-
-def _spread(vectors: list[Sizes], stride: int) -> list[Sizes]:
-    """All of them, those that are far apart first: there may be time for some only."""
-    return [sizes for first in range(stride) for sizes in vectors[first::stride]]
 
 
 def weakest_of(families: list[GroupExchanges]) -> tuple[frozenset[int], ...]:
     """The groups of the weakest family."""
     return min(families, key=attrgetter("value")).groups()
-
-
-def _second(sizes: Sizes) -> int:
-    return sizes[1] if len(sizes) > 1 else 0
 
 
 class GroupExchanges:
@@ -142,9 +133,8 @@ class GroupExchanges:
             if budget.is_over:
                 return
             home = self._home.copy()
-            for one, other in self._rng.integers(
-                0, len(home), (self._team.params.family_exchanges.strength, 2)
-            ).tolist():
+            strength = self._team.params.family_exchanges.strength
+            for one, other in self._rng.integers(0, len(home), (strength, 2)).tolist():
                 if (home[one] and home[other]) or not (self._must[one] or self._must[other]):
                     home[one], home[other] = home[other], home[one]
             self._improve(home, budget)
