@@ -97,6 +97,7 @@ NO_SEARCH = {
     "non_dominated_outcomes",
     "pattern_free_bound",
     "problem_document",
+    "read_params",
     "random_attack",
     "random_plan",
     "random_scenario",

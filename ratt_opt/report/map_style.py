@@ -14,9 +14,9 @@ class MapStyle:
     """Sizes and limits of a map on paper.
 
     ``many_robots`` : from this number only the best group and attacked robots are drawn one by one, the rest as a
-        density; more of it shows each robot, and words cover each other
+    density; more of it shows each robot, and words cover each other
     ``drawn_networks``, ``links_each`` : networks of at most that many robots and links a robot are drawn whole: they
-        are read by all of their links
+    are read by all of their links
     ``many_links`` : of a kind; above it they are drawn the fainter the more there are, so that they are not one blot
     ``nearest_edge`` : share of the map's diagonal; a field of view without a reach is drawn over it at least
     ``mark`` : half the width of a robot or target [points], which no word should cover

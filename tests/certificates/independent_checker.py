@@ -78,12 +78,12 @@ def check(document):
     """Raise ``RefusedError`` unless both ends are shown; return how many plans and groups walked down the trees."""
     team, claim = Team(document), document["claim"]
     plans = Upper(team, document["upper"], Fraction(claim["upper"])).walked
-    return plans, check_lower(team, document["lower"], Fraction(claim["lower"]))
+    return len(plans), check_lower(team, document["lower"], Fraction(claim["lower"]))
 
 
 class Upper:
     def __init__(self, team, proof, claim):
-        self.team, self.proof, self.claim, self.walked, self.named, self.parts = team, proof, claim, 0, {}, []
+        self.team, self.proof, self.claim, self.walked, self.named, self.parts = team, proof, claim, set(), {}, []
         self.points = [list(map(team.square, point)) for point in proof["points"]]
         for attack in proof["attacks"]:
             blinded, cut = set(attack["robots"]), set(map(tuple, attack["links"]))
@@ -111,7 +111,7 @@ class Upper:
         else:
             need("covers" in node or "fenchel" in node, "a case has no leaf that this checker reads")
             for plan in product(*left):
-                self.walked += 1
+                self.walked.add(plan)  # a plan comes once for each part that may be its best
                 bound = self.cover(node, plan) if "covers" in node else self.average(node, plan, best)
                 need(bound <= self.claim, "a leaf's bound is above the claim")
 

@@ -84,8 +84,7 @@ class Watcher(Budget):
         self.look()
 
 
-def test_at_any_time_the_last_exchange_that_all_have_heard_of_is_no_worse(monkeypatch):
-    monkeypatch.setattr(simulator, "LOOK", 1)
+def test_at_any_time_the_last_exchange_that_all_have_heard_of_is_no_worse():
     problem = cameras(np.random.default_rng(1), 3)
     agents, seen = make_agents(problem, exchanges=ExchangeParams(kicks=0)), []
 
@@ -96,7 +95,7 @@ def test_at_any_time_the_last_exchange_that_all_have_heard_of_is_no_worse(monkey
             if not seen or seen[-1] != elements:
                 seen.append(elements)
 
-    simulator.Simulation(agents, ro.Faults(), 0).run(Watcher(look))
+    simulator.Simulation(agents, ro.Faults(), 0).run(Watcher(look), 1)
     assert seen[0] == tuple(ro.ratt(problem).elements)
     worst = [ro.worst_case_attack(problem, list(elements)) for elements in seen]
     assert len(worst) > 1

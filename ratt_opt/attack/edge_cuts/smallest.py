@@ -59,10 +59,10 @@ class SizeParams:
 
     ``first_share``, ``first_nodes`` : of a first try of the next smaller size, before tree inequalities
     ``one_by_one`` : attacks that use the whole budgets, up to which every cut is tried: 20,000 take a second or two of
-        the processor at 120 robots
+    the processor at 120 robots
     ``trees_share`` : of the time left for tree inequalities, and ``proof_share`` for a size above the lower end
     ``soon_nodes``, ``soon_robots`` : nodes and robots up to which RATT asks for the exact size; fixed work, so that its
-        plan is the same on every machine. All set partitions are quicker up to ``soon_subsets`` robots
+    plan is the same on every machine. All set partitions are quicker up to ``soon_subsets`` robots
     """
 
     one_by_one: int = 20_000

@@ -1,7 +1,6 @@
 """Parameters of the search for best plans: passed down, read from TOML, refused if a search could not go on."""
 
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +8,6 @@ import pytest
 
 import ratt_opt as ro
 from ratt_opt import MaxMinParams
-from ratt_opt.cli import run
 from ratt_opt.solvers.maxmin import params as plan_params
 from ratt_opt.solvers.maxmin.params import AT_LEAST_ONE
 from tests.extremes import places, value_at, with_one
@@ -129,22 +127,6 @@ def test_what_a_search_cannot_go_on_with_is_refused(place: str, value: float) ->
 def test_a_search_without_the_level_of_the_best_plan_is_refused() -> None:
     with pytest.raises(ro.InputError, match="must hold 0"):
         with_one(MaxMinParams(), "levels.shares", ())
-
-
-def test_a_file_of_toml_changes_some(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path, scenario, out = tmp_path / "params.toml", tmp_path / "team.json", tmp_path / "out"
-    path.write_text("[walk]\nback = 7\n[levels]\nshares = [0.0, 0.5]\n")
-    ro.save_scenario(ro.random_scenario(3, 2, alpha_s=1, alpha_c=1, seed=0), scenario)
-    command = ["bound", str(scenario), "--out", str(out), "--params", str(path), "--guarantees", "none"]
-    assert run([*command, "--no-certificate"]) == 0
-    assert "walk.back = 7, levels.shares = (0.0, 0.5)" in (out / "report.json").read_text()
-    capsys.readouterr()
-    path.write_text("[walk]\nback = 0\n")
-    assert run(command) == 2
-    assert "params.walk.back must be at least 1; got 0" in capsys.readouterr().err
-    path.write_text("[walks]\nback = 1\n")
-    assert run(command) == 2
-    assert "params must name some of outcomes" in capsys.readouterr().err
 
 
 def test_the_values_of_a_plan_do_not_depend_on_parameters() -> None:
