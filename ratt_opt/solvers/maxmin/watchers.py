@@ -26,18 +26,22 @@ __all__ = ["watched_plan"]
 def watched_plan(problem: Problem, budget: Budget, params: WatcherParams) -> IntArray | None:
     """(N,) the plan whose least watched targets have most watchers, as far as a walk finds it.
 
-    ``None`` if elements see most targets, a value is no sum over targets, few robots may be busy, or the time is up
+    ``None`` if elements see most targets, or most of those that see one do not watch it. ``None``, too, if a value is
+    no sum over targets, few robots may be busy, or the time is up
     """
     objective = problem.information_objective
-    unseen = 1 - objective.information.any(axis=(-2, -1)).mean()
+    seeing = objective.information.any(axis=(-2, -1))
     if (
-        unseen < params.unseen
+        1 - seeing.mean() < params.unseen
         or not objective.overrides("target_tangents")
         or problem.at_most is not None
         or budget.is_over
     ):
         return None
-    return _Walk(problem, _watches(objective, params.watching)).run(budget.part(params.share), params.kicks)
+    watching = _watches(objective, params.watching)
+    if watching.sum() < params.precise * seeing.sum():
+        return None
+    return _Walk(problem, watching).run(budget.part(params.share), params.kicks)
 
 
 def _watches(objective: InformationObjective, share: float) -> BoolArray:

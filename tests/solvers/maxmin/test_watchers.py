@@ -18,7 +18,7 @@ from tests.strategies import small_team
 @pytest.mark.parametrize("seed", range(3))
 def test_no_plan_has_a_smaller_sum(seed, objective):
     problem = limited_view_scenario(4, 5, alpha_s=1, alpha_c=0, seed=seed, view=57, headings=4).problem(objective)
-    params = WatcherParams(unseen=0.0, kicks=60)
+    params = WatcherParams(unseen=0.0, precise=0.0, kicks=60)
     found = watched_plan(problem, Budget(), params)
     f = problem.objective
     most = f.target_values(f.prior_information + f.information.sum(axis=0))
@@ -31,6 +31,12 @@ def test_no_plan_has_a_smaller_sum(seed, objective):
 
 def test_robots_that_see_all_have_no_such_plan():
     assert watched_plan(small_team(0), Budget(), WatcherParams()) is None
+
+
+def test_there_is_no_such_plan_if_one_robot_alone_tells_little():
+    scenario = limited_view_scenario(20, 20, alpha_s=5, alpha_c=20, seed=0, view=57)
+    assert watched_plan(scenario.problem("logdet"), Budget(), WatcherParams()) is None
+    assert watched_plan(scenario.problem("trace"), Budget(), WatcherParams()) is not None
 
 
 def test_plans_watch_each_target_by_more_than_an_attack_takes():
