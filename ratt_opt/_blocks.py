@@ -13,8 +13,11 @@ STEPS = 1 << 22
 """Multiplications or comparisons of numbers in a part: some milliseconds."""
 
 
-def blocks(count: int, each: int) -> Iterator[tuple[int, int]]:
-    """First and last item (exclusive) of each part of a loop over ``count`` items that take ``each`` steps."""
-    size = max(STEPS // max(each, 1), 1)
+def blocks(count: int, each: int, steps: int | None = None) -> Iterator[tuple[int, int]]:
+    """First and last item (exclusive) of each part of a loop over ``count`` items that take ``each`` steps.
+
+    ``steps`` : of a part, ``STEPS`` by default
+    """
+    size = max((STEPS if steps is None else steps) // max(each, 1), 1)
     for first in range(0, count, size):
         yield first, min(first + size, count)

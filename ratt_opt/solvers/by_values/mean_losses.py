@@ -20,9 +20,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from ratt_opt._blocks import blocks
 
+if TYPE_CHECKING:
     from ratt_opt._validation import BoolArray, FloatArray, IntArray
 
 __all__ = ["MeanLosses"]
@@ -69,18 +69,14 @@ class MeanLosses:
         utility = self.utility[:, used]
         order = np.argsort(-utility, axis=1, kind="stable")
         falling, found = np.take_along_axis(utility, order, axis=1), np.zeros(len(kept))
-        for rows in self._blocks(len(kept), order.size):
-            inside = np.cumsum((kept[rows][:, used] * point[used])[:, order], axis=2)
-            for budget in np.unique(wiped[rows]).tolist():
-                own = np.flatnonzero(wiped[rows] == budget)
+        for first, last in blocks(len(kept), order.size, self._block):
+            inside = np.cumsum((kept[first:last, used] * point[used])[:, order], axis=2)
+            for budget in np.unique(wiped[first:last]).tolist():
+                own = np.flatnonzero(wiped[first:last] == budget)
                 for k, drop in self._drops[budget]:
                     taken = np.diff(np.minimum(inside[own], k), axis=2, prepend=0.0)
-                    found[rows.start + own] += drop * np.einsum("rpc,pc->r", taken, falling)
+                    found[first + own] += drop * np.einsum("rpc,pc->r", taken, falling)
         return found
-
-    def _blocks(self, count: int, size: int) -> Iterator[slice]:
-        step = max(self._block // max(size, 1), 1)
-        yield from (slice(k, min(k + step, count)) for k in range(0, count, step))
 
     def nearest(self, column: int) -> IntArray:
         """(columns,) all columns, those whose utilities differ least from one column's first."""

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ratt_opt.bounds.cuts import ROUNDING
+from ratt_opt.solvers.by_values.kept_rows import KeptRows
 from ratt_opt.solvers.by_values.outcome_rows import OutcomeRows, blinds_alone
-from ratt_opt.solvers.by_values.part_row import PartRow, combine, down_to_multiple
+from ratt_opt.solvers.by_values.part_row import PartRow
 from ratt_opt.solvers.by_values.plan_tree import Pooled
 from ratt_opt.solvers.maxmin.relaxation import NodeProgram
 from ratt_opt.solvers.maxmin.rows.exchanges import exchanged
@@ -30,12 +31,11 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.by_values.columns import PlanColumns, PlanNode
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
     from ratt_opt.solvers.maxmin.params import MaxMinParams
-    from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
 
 __all__ = ["PartRows"]
 
 
-class PartRows:
+class PartRows(KeptRows):
     """Rows that bound the plans of any node; ``columns`` of the linear program are the elements.
 
     ``single`` : (E,) individual values if the function is submodular
@@ -52,16 +52,12 @@ class PartRows:
         budget: Budget,
         params: MaxMinParams,
     ) -> None:
-        self._problem, self._parts, self._attacks = problem, parts, attacks
-        self._params, self._of_pool, self._spacing = params.part_rows, params.rows, problem.objective.spacing
-        self.columns, self._effort = columns, params.part_bounds
+        program = NodeProgram(len(columns.kinds), columns.of_kind, columns.limit)
+        super().__init__(columns, program, problem.objective.spacing, params)
+        self._problem, self._parts, self._attacks, self._effort = problem, parts, attacks, params.part_bounds
         self._touching = [parts.touching(j) for j in range(parts.n_parts)]
         self._pool = InequalityPool(problem.robot, parts.n_parts, self._first_bounds(budget), params.rows)
-        self._program = NodeProgram(len(columns.kinds), columns.of_kind, columns.limit)
-        self._rows: dict[int, PartRow] = {}
-        self._made = 0
         self._outcomes = OutcomeRows(problem, attacks, None if blinds_alone(problem) else Pooled(problem, single))
-        self._mean = np.zeros(len(columns.kinds))
 
     @property
     def leaves_out(self) -> bool:
@@ -72,40 +68,17 @@ class PartRows:
         """Leave out rows that do not hold at a node, and those that were of no use lately."""
         self._outcomes.take_over()
         self._program.drop_idle(self._params.patience)
-        self._rows = {k: self._rows[k] for k in self._program.in_use}
+        self._keep_those_in_use()
         self._program.within(node.lower, node.upper)
         if not self._program.in_use:
             self.separate(node, self.columns.middle_of(node), np.inf, budget)
-
-    def _use(self, row: PartRow) -> None:
-        """Add one row to the program."""
-        self._program.use(self._made, row.constant, row.scores)
-        self._rows[self._made] = row
-        self._made += 1
-
-    def solve(self, budget: Budget) -> RelaxedPlan | None:
-        """The fractional plan (columns,) of the node, or ``None`` if HiGHS claims none."""
-        return self._program.solve(budget.seconds_left)
-
-    def largest(self, relaxed: RelaxedPlan, node: PlanNode) -> float:
-        """The largest value of the rows combined by the multipliers, over the plans of a node."""
-        active = np.flatnonzero(relaxed.duals > 0)
-        combined = combine([self._rows[k] for k in relaxed.cuts[active].tolist()], relaxed.duals[active])
-        if combined is None:
-            return np.inf
-        gains = self.columns.largest(combined.scores, node)
-        bound = combined.constant + gains + ROUNDING * (combined.size + abs(gains))
-        return down_to_multiple(bound, self._spacing)
 
     def separate(self, node: PlanNode, point: FloatArray, level: float, budget: Budget) -> bool:
         """Add rows that cut a fractional plan (columns,) off, by bounds known or new ones; whether there are any.
 
         Rows are taken between the plan and a mean of earlier ones first, which needs fewer rounds.
         """
-        params, fresh = self._of_pool, self._params.fresh
-        self._mean = self.columns.within(self._mean, node, point)
-        self._mean = (1 - params.newest) * self._mean + params.newest * point
-        between = (1 - params.inward) * point + params.inward * self._mean
+        fresh, between = self._params.fresh, self._inward(node, point)
         goal = level - self._params.tolerance * abs(level) if level < np.inf else level
         deep = goal - self._params.deep * max(goal - self._attacks.lower, 0.0) if level < np.inf else level
         if self._add_rows((between, point), deep, 0, budget):
@@ -125,7 +98,7 @@ class PartRows:
         for inside in left:
             constant, scores = self._pool.combined(inside, at)
             if constant + float(scores @ point) < goal:
-                self._use(PartRow(constant, scores))
+                self._use(PartRow(constant, scores), scores)
                 added = True
         return added
 

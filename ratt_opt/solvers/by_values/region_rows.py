@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ratt_opt.bounds.cuts import ROUNDING
 from ratt_opt.solvers.by_values.columns import CountedRegion
+from ratt_opt.solvers.by_values.kept_rows import KeptRows
 from ratt_opt.solvers.by_values.mean_losses import MeanLosses
-from ratt_opt.solvers.by_values.part_row import NUMBER, SUM, PartRow, combine, down_to_multiple
+from ratt_opt.solvers.by_values.part_row import NUMBER, SUM, PartRow
 from ratt_opt.solvers.by_values.regions import RegionChoice
 from ratt_opt.solvers.maxmin.relaxation import NodeProgram
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from ratt_opt.solvers.by_values.columns import PlanColumns, PlanNode
     from ratt_opt.solvers.by_values.plan_attacks import PlanAttacks
     from ratt_opt.solvers.maxmin.params import MaxMinParams
-    from ratt_opt.solvers.maxmin.relaxation import RelaxedPlan
 
 __all__ = ["RegionRows"]
 
@@ -42,7 +41,7 @@ class _Wiped(NamedTuple):
     regions: tuple[CountedRegion, ...]
 
 
-class RegionRows:
+class RegionRows(KeptRows):
     """The rows known bound the plans of any node; ``columns`` : merged ones of the linear program."""
 
     leaves_out = False
@@ -51,8 +50,7 @@ class RegionRows:
     def __init__(
         self, problem: Problem, f: BestElements, columns: PlanColumns, attacks: PlanAttacks, params: MaxMinParams
     ) -> None:
-        self.columns, self._attacks, self._spacing = columns, attacks, f.spacing
-        self._params, self._rounds, self._of_regions = params.part_rows, params.rows, params.regions
+        self._attacks, self._of_regions = attacks, params.regions
         self._n, self._parts = len(columns.kinds), f.n_parts
         first = np.unique(columns.column, return_index=True)[1]
         utility = np.ascontiguousarray((f.utility[first] * f.weights).T)
@@ -62,17 +60,15 @@ class RegionRows:
         self._single = [CountedRegion(one, 1) for one in np.eye(self._n, dtype=np.bool_)]
         # The last level is the number of robots by which regions are violated: a plan pays with all that there is.
         costs = np.append(np.zeros(self._parts), float(utility.max(axis=1, initial=0.0).sum()))
-        self._program = NodeProgram(self._n, columns.of_kind, None, columns.sizes, costs)
-        self._rows: dict[int, PartRow] = {}
-        self._made = 0
-        self._mean = np.zeros(self._n)
+        program = NodeProgram(self._n, columns.of_kind, None, columns.sizes, costs)
+        super().__init__(columns, program, f.spacing, params, self._parts)
 
     def begin(self, node: PlanNode, budget: Budget) -> None:
         """Leave out rows that do not hold at a node, and those that were of no use lately."""
         budget.check()
         self._program.drop_idle(self._params.patience)
         self._program.drop(lambda k: not self._holds(self._rows[k], node))
-        self._rows = {k: self._rows[k] for k in self._program.in_use}
+        self._keep_those_in_use()
         free = np.zeros(self._parts)
         lower, upper = np.concatenate([node.lower, free, [-np.inf]]), np.concatenate([node.upper, free + np.inf, [0.0]])
         self._program.within(lower, upper)
@@ -80,13 +76,13 @@ class RegionRows:
         constants, gains = self._means.bounds(np.zeros(self._n))
         for j in range(self._parts):
             if j not in known:
-                self._use(PartRow(float(constants[j]), gains[j], part=j))
+                self._state(PartRow(float(constants[j]), gains[j], part=j))
         if SUM not in known:
-            self._use(PartRow(0.0, np.zeros(self._n), part=SUM))
+            self._state(PartRow(0.0, np.zeros(self._n), part=SUM))
         stated = {row.regions[0] for row in self._rows.values() if row.part == NUMBER}
         for one, sign in [*((one, -1.0) for one in node.within), *((one, 1.0) for one in node.beyond)]:
             if one not in stated:
-                self._use(
+                self._state(
                     PartRow(-sign * (one.most + (sign > 0)), np.where(one.columns, sign, 0.0), (one,), part=NUMBER)
                 )
 
@@ -97,29 +93,13 @@ class RegionRows:
             return row.regions[0] in (node.within if row.constant > 0 else node.beyond)
         return all(one in node.within or _is_single(one, node) for one in row.regions)
 
-    def _use(self, row: PartRow) -> None:
-        """Add one row to the program."""
+    def _state(self, row: PartRow) -> None:
+        """Add one row to the program, with its part of the levels."""
         levels = np.zeros(self._parts + 1)
         if row.part == SUM:
             levels[:-1] = 1.0
         level = {NUMBER: self._n + self._parts}.get(row.part, self._n + row.part if row.part >= 0 else None)
-        self._program.use(self._made, row.constant, np.append(row.scores, levels), level)
-        self._rows[self._made] = row
-        self._made += 1
-
-    def solve(self, budget: Budget) -> RelaxedPlan | None:
-        """The fractional plan (columns,) of the node, or ``None`` if HiGHS claims none."""
-        return self._program.solve(budget.seconds_left)
-
-    def largest(self, relaxed: RelaxedPlan, node: PlanNode) -> float:
-        """The largest value of the rows combined by the multipliers, over the plans of a node."""
-        active = np.flatnonzero(relaxed.duals > 0)
-        combined = combine([self._rows[k] for k in relaxed.cuts[active].tolist()], relaxed.duals[active], self._parts)
-        if combined is None:
-            return np.inf
-        gains = self.columns.largest(combined.scores, node)
-        bound = combined.constant + gains + ROUNDING * (combined.size + abs(gains))
-        return down_to_multiple(bound, self._spacing)
+        self._use(row, np.append(row.scores, levels), level)
 
     def separate(self, node: PlanNode, point: FloatArray, level: float, budget: Budget) -> bool:
         """Add rows that cut a fractional plan (columns,) off; whether there are any.
@@ -127,17 +107,14 @@ class RegionRows:
         Rows are taken between the plan and a mean of earlier ones, too, which needs fewer rounds.
         """
         budget.check()
-        tolerance, params = self._params.tolerance, self._rounds
+        tolerance = self._params.tolerance
         point, values = point[: self._n], point[self._n : self._n + self._parts]
-        self._mean = self.columns.within(self._mean, node, point)
-        self._mean = (1 - params.newest) * self._mean + params.newest * point
-        between = (1 - params.inward) * point + params.inward * self._mean
-        made = self._made
+        between, made = self._inward(node, point), self._made
         for at in (between, point):
             constants, gains = self._means.bounds(at)
             below = constants + gains @ point < values - tolerance * np.abs(values)
             for j in np.flatnonzero(below).tolist():
-                self._use(PartRow(float(constants[j]), gains[j], part=j))
+                self._state(PartRow(float(constants[j]), gains[j], part=j))
         goal = level - tolerance * abs(level)
         wiped = {one.kept.tobytes(): one for at in (between, point) for one in self._wiped(at, node, goal)}
         for one in wiped.values():
@@ -152,7 +129,7 @@ class RegionRows:
             constants, gains = self._means.bounds(at, one.kept, one.robots)
             row = PartRow(float(constants.sum()), gains.sum(axis=0), one.regions)
             if row.constant + float(row.scores @ plans[-1]) < goal:
-                self._use(row)
+                self._state(row)
                 return
 
     def _wiped(self, point: FloatArray, node: PlanNode, goal: float) -> list[_Wiped]:
